@@ -1,0 +1,4 @@
+//! A Cortex-M4F and an STM32F407 in software. Knows nothing of drones.
+
+pub mod time;
+pub mod wiring;

@@ -1,0 +1,2 @@
+//! The command `hil`.
+fn main() {}
