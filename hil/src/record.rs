@@ -1,0 +1,172 @@
+//! What a flight leaves behind: everything that happened, in the order of time, as plain data.
+//!
+//! Positions are in the route's frame: x north, y west, metres, origin at the true start. Headings
+//! are radians, counter-clockwise from north.
+
+use serde::Serialize;
+
+/// What the drone was doing; the colours of the paper's Fig. 6 follow from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// On the ground, taking off or landing.
+    Ground,
+    /// Recording the route (red).
+    Outbound,
+    /// Inbound, led by odometry (yellow).
+    Odometry,
+    /// Inbound, led by the camera (blue).
+    Homing,
+}
+
+/// Position and heading in the plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PlanarPose {
+    /// North, metres.
+    pub x: f64,
+    /// West, metres.
+    pub y: f64,
+    /// Counter-clockwise from north, radians.
+    pub yaw: f64,
+}
+
+impl PlanarPose {
+    /// Distance in the plane, metres.
+    pub fn distance(&self, other: &Self) -> f64 {
+        libm::hypot(self.x - other.x, self.y - other.y)
+    }
+}
+
+/// The flight ten times a second.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TrackPoint {
+    /// Flight time, seconds.
+    pub t: f64,
+    /// What the drone was doing.
+    pub phase: Phase,
+    /// Where it was.
+    pub truth: PlanarPose,
+    /// Where its filter believed it was.
+    pub estimate: PlanarPose,
+    /// Where the same filter, never corrected by the camera, believed it was.
+    pub uncorrected: PlanarPose,
+    /// Height above the ground, metres.
+    pub height: f64,
+}
+
+/// A snapshot as the firmware reported it (MAP message) while recording.
+#[derive(Clone, Debug, Serialize)]
+pub struct SnapshotMark {
+    /// Flight time, seconds.
+    pub t: f64,
+    /// The firmware's index, from 0.
+    pub index: u16,
+    /// Odometry vectors below it on the stack.
+    pub odometry_count: u16,
+    /// Where the firmware believed it was taken.
+    pub believed: PlanarPose,
+    /// Where it was taken.
+    pub truth: PlanarPose,
+    /// a_1..a_8, b_1..b_8 in counts.
+    pub coefficients: Vec<i8>,
+}
+
+/// A set-point of the firmware (VECTOR message).
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct VectorMark {
+    /// Flight time, seconds.
+    pub t: f64,
+    /// True: from homing. False: from odometry.
+    pub visual: bool,
+    /// Where the drone believed it was.
+    pub start: PlanarPose,
+    /// Where it was told to go; `yaw` is the turn asked for.
+    pub target: PlanarPose,
+    /// Where it was.
+    pub truth: PlanarPose,
+}
+
+/// A realignment of the filter at a snapshot (INS_CORRECTION message).
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct CorrectionMark {
+    /// Flight time, seconds.
+    pub t: f64,
+    /// The firmware's correction index.
+    pub index: u16,
+    /// The estimate before.
+    pub from: PlanarPose,
+    /// The estimate after.
+    pub to: PlanarPose,
+    /// Where the drone was.
+    pub truth: PlanarPose,
+}
+
+/// An odometry vector as it is followed on the way back, oldest last.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct OdometryMark {
+    /// Index on the firmware's odometry stack, from 0.
+    pub index: u16,
+    /// The vector as stored, in counts of 0.1 m (x north, y west).
+    pub counts: [i8; 2],
+}
+
+/// One camera frame as the firmware logged it.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct FrameMark {
+    /// Flight time, seconds.
+    pub t: f64,
+    /// Processor cycles from frame to spectrum, by the firmware's own cycle counter; none where
+    /// no processor was emulated.
+    pub cycles: Option<u32>,
+    /// Mean luma of the horizon, 0..=255.
+    pub luma: f32,
+    /// Shutter, sensor lines.
+    pub lines: u16,
+    /// Analogue gain, 1 = 0 dB.
+    pub gain: f32,
+}
+
+/// One line of the flight's log.
+#[derive(Clone, Debug, Serialize)]
+pub struct LogLine {
+    /// Flight time, seconds.
+    pub t: f64,
+    /// Who speaks: `firmware`, `app` or `rig`.
+    pub source: &'static str,
+    /// error, warn, info, debug or trace.
+    pub level: String,
+    /// What was said.
+    pub text: String,
+}
+
+/// A vertical wall or panel seen from above.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct WallSegment {
+    /// One end: x north, y west, metres.
+    pub from: [f64; 2],
+    /// The other end.
+    pub to: [f64; 2],
+}
+
+/// Everything that happened.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Recording {
+    /// The world from above.
+    pub plan: Vec<WallSegment>,
+    /// The way points of the scripted route, metres.
+    pub route: Vec<[f64; 2]>,
+    /// Ten points a second.
+    pub track: Vec<TrackPoint>,
+    /// In the order in which they were taken.
+    pub snapshots: Vec<SnapshotMark>,
+    /// What the firmware stored between the snapshots, newest first.
+    pub odometry: Vec<OdometryMark>,
+    /// Every VECTOR.
+    pub vectors: Vec<VectorMark>,
+    /// Every new INS_CORRECTION.
+    pub corrections: Vec<CorrectionMark>,
+    /// Every frame that was processed.
+    pub frames: Vec<FrameMark>,
+    /// The log.
+    pub log: Vec<LogLine>,
+}

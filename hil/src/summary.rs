@@ -1,0 +1,86 @@
+//! The figures of one flight. Field names are a promise to scripts.
+
+use serde::Serialize;
+
+/// `summary.json` of a flight.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// The drone followed the route to its first snapshot and landed.
+    pub completed: bool,
+    /// Why the flight ended, for people.
+    pub outcome: String,
+    /// `emulator` or `native`.
+    pub backend: &'static str,
+    /// Seed of world, sensors and camera noise.
+    pub seed: u64,
+    /// Name of the world.
+    pub world: String,
+    /// Name of the route.
+    pub route: String,
+    /// `both`, or `odometry` where homing was switched off.
+    pub homing: &'static str,
+    /// Snapshot spacing, metres.
+    pub spacing_m: f64,
+    /// True length of the way out, metres.
+    pub outbound_m: f64,
+    /// True length of the way back, metres.
+    pub inbound_m: f64,
+    /// Distance from the true start at the end, metres.
+    pub home_error_m: f64,
+    /// Inbound truth against the outbound path, root mean square, metres.
+    pub cross_track_rms_m: f64,
+    /// Where the uncorrected estimate would have led: its error at the end, metres.
+    pub odometry_only_error_m: f64,
+    /// Snapshots taken.
+    pub snapshots: usize,
+    /// Route memory with the odometry counts, bytes.
+    pub memory_bytes: usize,
+    /// `memory_bytes` per metre of the way out.
+    pub bytes_per_m: f64,
+    /// Frames the camera sent while it was captured.
+    pub frames_sent: u64,
+    /// Frames captured whole.
+    pub frames_captured: u64,
+    /// Frames the camera sent and the firmware did not capture or did not process.
+    pub frames_dropped: u64,
+    /// VECTOR messages received.
+    pub vectors: usize,
+    /// Processor cycles per frame, frame to spectrum; none on the native backend.
+    pub cycles_per_frame: Option<CyclesPerFrame>,
+    /// Share of cycles in which the processor was awake, 0..=1; none on the native backend.
+    pub cpu_load: Option<f64>,
+    /// Flight time, seconds.
+    pub flight_s: f64,
+    /// Wall time, seconds. The only figures that differ from run to run are this and the next.
+    pub wall_s: f64,
+    /// `flight_s / wall_s`.
+    pub realtime_factor: f64,
+    /// The image; none on the native backend.
+    pub firmware: Option<FirmwareFigures>,
+}
+
+/// Quantiles of the cycles of one frame by the firmware's own counter, checked against the rig's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct CyclesPerFrame {
+    /// Median.
+    pub p50: u32,
+    /// 99th percentile.
+    pub p99: u32,
+    /// Largest.
+    pub max: u32,
+    /// Median by the emulator's counter, read at the entry and return of the same function.
+    pub emulator_p50: u32,
+    /// Largest difference of the two counters over all frames.
+    pub largest_disagreement: u32,
+}
+
+/// What the image needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct FirmwareFigures {
+    /// Bytes of flash.
+    pub flash_bytes: u32,
+    /// Bytes of static RAM.
+    pub ram_bytes: u32,
+    /// Deepest stack of this flight, bytes.
+    pub stack_peak_bytes: u32,
+}
