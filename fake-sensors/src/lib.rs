@@ -1,1 +1,3 @@
-//! (room under construction)
+//! Signals computed from truth, time and a seed: worlds, the panoramic camera, optical flow, range and IMU.
+
+pub mod random;
