@@ -1,4 +1,7 @@
 //! A Cortex-M4F and an STM32F407 in software. Knows nothing of drones.
 
+pub mod core;
+pub mod image;
+pub mod memory;
 pub mod time;
 pub mod wiring;
