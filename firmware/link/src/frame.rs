@@ -1,0 +1,234 @@
+//! The frame around a message (pprzlink 2.0).
+//!
+//! | offset | size | meaning |
+//! |---|---|---|
+//! | 0 | 1 | start byte 0x99 |
+//! | 1 | 1 | length of the whole frame, start byte and checksum included |
+//! | 2 | 1 | sender id |
+//! | 3 | 1 | receiver id |
+//! | 4 | 1 | low nibble: class (5, `intermcu`); high nibble: component |
+//! | 5 | 1 | message id |
+//! | 6 | length - 8 | body |
+//! | length - 2 | 2 | checksum over everything between the start byte and itself |
+//!
+//! There is no byte stuffing: a start byte can occur anywhere in a frame.
+
+use heapless::Vec;
+
+use crate::checksum::checksum;
+use crate::field::Writer;
+use crate::message::{Message, layout::Layout};
+
+/// Longest frame: its length is one byte.
+pub const MAX_FRAME_LEN: usize = 255;
+/// Shortest frame: header and checksum around an empty body.
+pub const MIN_FRAME_LEN: usize = HEADER_LEN + CHECKSUM_LEN;
+/// Longest body.
+pub(crate) const MAX_BODY_LEN: usize = MAX_FRAME_LEN - MIN_FRAME_LEN;
+
+/// First byte of every frame.
+pub(crate) const START: u8 = 0x99;
+
+const HEADER_LEN: usize = 6;
+const CHECKSUM_LEN: usize = 2;
+/// Offset of the length byte, where the checksum begins as well.
+const LENGTH_AT: usize = 1;
+/// Offset of the byte that holds class (low nibble) and component (high nibble).
+const CLASS_AT: usize = 4;
+const CLASS_MASK: u8 = 0x0f;
+const COMPONENT_SHIFT: u32 = 4;
+/// Class id of the messages between autopilot and camera.
+const INTERMCU: u8 = 5;
+
+/// One encoded frame.
+pub type Encoded = Vec<u8, MAX_FRAME_LEN>;
+
+/// A message with the addresses of its header.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Frame {
+    /// Who sent it. Both ends of this link use 0.
+    pub sender: u8,
+    /// Whom it is for. Both ends of this link use 0; 255 means everybody.
+    pub receiver: u8,
+    /// Component id, 0 to 15. Both ends of this link use 0.
+    pub component: u8,
+    /// What it says.
+    pub message: Message,
+}
+
+impl From<Message> for Frame {
+    /// Addresses the message as both ends of this link do: all zero.
+    fn from(message: Message) -> Self {
+        Self {
+            sender: 0,
+            receiver: 0,
+            component: 0,
+            message,
+        }
+    }
+}
+
+impl Message {
+    /// The bytes for the wire, addressed with zeros.
+    pub fn encode(&self) -> Encoded {
+        encode([0, 0], 0, self)
+    }
+}
+
+impl Frame {
+    /// The bytes for the wire. Of `component`, the low nibble is sent.
+    pub fn encode(&self) -> Encoded {
+        encode([self.sender, self.receiver], self.component, &self.message)
+    }
+}
+
+fn encode([sender, receiver]: [u8; 2], component: u8, message: &Message) -> Encoded {
+    let mut bytes = Encoded::new();
+    let mut out = Writer(&mut bytes);
+    let class = (component << COMPONENT_SHIFT) | INTERMCU;
+    for byte in [START, 0, sender, receiver, class, message.id()] {
+        out.u8(byte);
+    }
+    message.write(&mut out);
+    let len = bytes.len() + CHECKSUM_LEN;
+    if let Some(length) = bytes.get_mut(LENGTH_AT) {
+        *length = len as u8;
+    }
+    let sums = checksum(bytes.get(LENGTH_AT..).unwrap_or_default());
+    let mut out = Writer(&mut bytes);
+    for byte in sums {
+        out.u8(byte);
+    }
+    bytes
+}
+
+/// Why no frame of this link begins at a start byte.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Refusal {
+    /// The length byte is below 8, the length of an empty frame.
+    BadLength,
+    /// The class is not `intermcu`.
+    WrongClass,
+    /// No message has this id.
+    UnknownMessage,
+    /// The length is not that of the message, or contradicts its array's length byte.
+    WrongSize,
+    /// The checksum does not match.
+    BadChecksum,
+}
+
+/// The frame that the bytes from a start byte on begin with, and its length; `None` while more bytes
+/// are needed to tell.
+///
+/// A start byte inside other data claims up to 254 following bytes. Checking the header as soon as
+/// it is there keeps such a claim from holding up the good frames behind it.
+pub(crate) fn judge(bytes: &[u8]) -> Result<Option<(Frame, usize)>, Refusal> {
+    let Some(len) = judge_header(bytes)? else {
+        return Ok(None);
+    };
+    let Some(frame) = bytes.get(..len) else {
+        return Ok(None);
+    };
+    read_frame(frame).map(|frame| Some((frame, len)))
+}
+
+/// The length that the header states; `None` as long as it is incomplete and blameless.
+fn judge_header(bytes: &[u8]) -> Result<Option<usize>, Refusal> {
+    let Some(len) = bytes.get(LENGTH_AT).map(|len| usize::from(*len)) else {
+        return Ok(None);
+    };
+    let body_len = len.checked_sub(MIN_FRAME_LEN).ok_or(Refusal::BadLength)?;
+    let Some(class) = bytes.get(CLASS_AT) else {
+        return Ok(None);
+    };
+    if class & CLASS_MASK != INTERMCU {
+        return Err(Refusal::WrongClass);
+    }
+    let Some((&[.., id], known)) = bytes.split_first_chunk::<HEADER_LEN>() else {
+        return Ok(None);
+    };
+    let layout = Layout::of(id).ok_or(Refusal::UnknownMessage)?;
+    if !layout.fits(body_len, known) {
+        return Err(Refusal::WrongSize);
+    }
+    Ok(Some(len))
+}
+
+/// The frame that all of `bytes` is, if the checksum holds.
+fn read_frame(bytes: &[u8]) -> Result<Frame, Refusal> {
+    let Some(([_, covered @ ..], sums)) = bytes.split_last_chunk::<CHECKSUM_LEN>() else {
+        return Err(Refusal::BadLength);
+    };
+    if checksum(covered) != *sums {
+        return Err(Refusal::BadChecksum);
+    }
+    let [_, sender, receiver, class, id, body @ ..] = covered else {
+        return Err(Refusal::BadLength);
+    };
+    Ok(Frame {
+        sender: *sender,
+        receiver: *receiver,
+        component: class >> COMPONENT_SHIFT,
+        message: Message::read(*id, body).ok_or(Refusal::WrongSize)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use heapless::Vec;
+
+    use crate::message::{
+        CAMERA_CAPACITY, COMMAND_CAPACITY, Camera, Command, DEBUG_CAPACITY, MAP_CAPACITY, Map,
+        Message, Vector,
+    };
+
+    #[test]
+    fn the_worked_vector_example_has_these_bytes() {
+        let vector = Message::Vector(Vector {
+            target_e: 1.5,
+            target_n: -2.0,
+            delta_yaw: 0.25,
+            start_e: 0.0,
+            start_n: 0.5,
+            source: 0,
+        });
+        let expected = [
+            0x99, 0x1d, 0x00, 0x00, 0x05, 0x09, 0x00, 0x00, 0xc0, 0x3f, 0x00, 0x00, 0x00, 0xc0,
+            0x00, 0x00, 0x80, 0x3e, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x3f, 0x00, 0xe7,
+            0xc3,
+        ];
+        assert_eq!(vector.encode(), expected);
+    }
+
+    #[test]
+    fn the_follow_command_has_these_bytes() {
+        let follow = Message::Command(Command {
+            command: 0x12,
+            args: Vec::new(),
+        });
+        let expected = [0x99, 0x0a, 0x00, 0x00, 0x05, 0x06, 0x12, 0x00, 0x27, 0x90];
+        assert_eq!(follow.encode(), expected);
+    }
+
+    #[test]
+    fn arrays_end_where_a_frame_of_255_bytes_is_full() {
+        let capacities = [
+            DEBUG_CAPACITY,
+            COMMAND_CAPACITY,
+            MAP_CAPACITY,
+            CAMERA_CAPACITY,
+        ];
+        assert_eq!(capacities, [246, 245, 226, 246]);
+        let map = Map {
+            snapshot_ak_bk: [-1; MAP_CAPACITY].into_iter().collect(),
+            ..Map::default()
+        };
+        assert_eq!(Message::Map(map).encode().len(), 255);
+        let camera = Camera {
+            snapshot_ak_bk: [-1; CAMERA_CAPACITY].into_iter().collect(),
+        };
+        assert_eq!(Message::Camera(camera).encode().len(), 255);
+    }
+}
