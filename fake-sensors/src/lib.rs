@@ -1,3 +1,5 @@
 //! Signals computed from truth, time and a seed: worlds, the panoramic camera, optical flow, range and IMU.
 
+pub mod camera;
 pub mod random;
+pub mod world;

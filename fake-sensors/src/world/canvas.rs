@@ -1,0 +1,149 @@
+//! Painting textures: natural image statistics and simple shapes, from a seed.
+//!
+//! Natural scenes have an amplitude spectrum that falls as 1/f (Field 1987): every octave of
+//! spatial frequency holds the same contrast. A canvas gets that from noise lattices, one per
+//! octave, all of one amplitude; and because radiances of natural scenes are log-normal, the sum
+//! goes through an exponential.
+
+use super::texture::Texture;
+use crate::random::Normal;
+
+/// Edge length of a texel in metres: below a pixel's footprint at the nearest distance a flight
+/// comes to a surface (0.5 m above the floor).
+const TEXEL_M: f32 = 0.03;
+/// Wavelength of the coarsest octave in metres: that of a whole wall.
+const COARSEST_M: f32 = 8.0;
+
+/// A rectangle on a canvas in metres: from (`u`, `v`) to (`u + width`, `v + height`).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Area {
+    pub(super) u: f32,
+    pub(super) v: f32,
+    pub(super) width: f32,
+    pub(super) height: f32,
+}
+
+/// A texture being painted; u along its width, v up its height.
+#[derive(Clone, Debug)]
+pub(super) struct Canvas {
+    width: usize,
+    height: usize,
+    texels: Vec<f32>,
+}
+
+impl Canvas {
+    /// An even canvas of the given size in metres.
+    pub(super) fn new(width_m: f32, height_m: f32, radiance: f32) -> Self {
+        let [width, height] = [width_m, height_m].map(|m| (m / TEXEL_M + 0.5) as usize + 1);
+        Self {
+            width,
+            height,
+            texels: vec![radiance; width * height],
+        }
+    }
+
+    /// Multiplies all of the canvas by noise of natural statistics: each octave from
+    /// [`COARSEST_M`] down has log-contrast `contrast` (standard deviation).
+    pub(super) fn weather(&mut self, noise: &mut Normal, contrast: f32) {
+        let mut field = vec![0.0; self.texels.len()];
+        let mut wavelength_m = COARSEST_M;
+        while wavelength_m > 2.0 * TEXEL_M {
+            let cell = 0.5 * wavelength_m / TEXEL_M;
+            Lattice::new(noise, self.width, self.height, cell).add_to(&mut field, self.width);
+            wavelength_m *= 0.5;
+        }
+        for (texel, log) in self.texels.iter_mut().zip(field) {
+            *texel *= libm::expf(contrast * log);
+        }
+    }
+
+    /// Paints `area` with `shade`, which gets (0..1, 0..1) within the area and the old radiance,
+    /// and gives the new.
+    pub(super) fn paint(&mut self, area: Area, shade: impl Fn(f32, f32, f32) -> f32) {
+        for v in 0..self.height {
+            let y = ((v as f32 + 0.5) * TEXEL_M - area.v) / area.height;
+            if !(0.0..1.0).contains(&y) {
+                continue;
+            }
+            for u in 0..self.width {
+                let x = ((u as f32 + 0.5) * TEXEL_M - area.u) / area.width;
+                if (0.0..1.0).contains(&x) {
+                    let texel = &mut self.texels[v * self.width + u];
+                    *texel = shade(x, y, *texel);
+                }
+            }
+        }
+    }
+
+    /// Fills a rectangle.
+    pub(super) fn fill(&mut self, area: Area, radiance: f32) {
+        self.paint(area, |_, _, _| radiance);
+    }
+
+    /// Fills the ellipse that touches the edges of `area`.
+    pub(super) fn fill_ellipse(&mut self, area: Area, radiance: f32) {
+        self.paint(area, |x, y, old| {
+            let (x, y) = (2.0 * x - 1.0, 2.0 * y - 1.0);
+            if x * x + y * y < 1.0 { radiance } else { old }
+        });
+    }
+
+    /// The finished texture.
+    pub(super) fn into_texture(self) -> Texture {
+        Texture::new(self.width, self.texels, 1.0 / TEXEL_M)
+    }
+}
+
+/// Noise of one octave: normal deviates on a square lattice, smoothed by cubic B-splines.
+struct Lattice {
+    columns: usize,
+    cell: f32,
+    values: Vec<f32>,
+}
+
+impl Lattice {
+    /// Standard deviation of a field of unit deviates under the cubic B-spline, averaged over the
+    /// cell: the sum of its squared weights, 151/315 in each direction.
+    const SMOOTHED: f32 = 151.0 / 315.0;
+
+    fn new(noise: &mut Normal, width: usize, height: usize, cell: f32) -> Self {
+        let [columns, rows] = [width, height].map(|texels| (texels as f32 / cell) as usize + 4);
+        let values = (0..columns * rows)
+            .map(|_| noise.sample() as f32 / Self::SMOOTHED)
+            .collect();
+        Self {
+            columns,
+            cell,
+            values,
+        }
+    }
+
+    fn add_to(&self, field: &mut [f32], width: usize) {
+        let across: Vec<_> = (0..width).map(|u| spline(u, self.cell)).collect();
+        for (v, line) in field.chunks_exact_mut(width).enumerate() {
+            let (first_row, row_weights) = spline(v, self.cell);
+            for (texel, &(first_column, column_weights)) in line.iter_mut().zip(&across) {
+                for (row, row_weight) in (first_row..).zip(row_weights) {
+                    let start = row * self.columns + first_column;
+                    let values = &self.values[start..start + 4];
+                    let sum: f32 = values.iter().zip(column_weights).map(|(a, b)| a * b).sum();
+                    *texel += row_weight * sum;
+                }
+            }
+        }
+    }
+}
+
+/// First lattice point and the four cubic B-spline weights at texel `x`.
+fn spline(x: usize, cell: f32) -> (usize, [f32; 4]) {
+    let x = x as f32 / cell;
+    let t = x - x.floor();
+    let (t2, t3) = (t * t, t * t * t);
+    let weights = [
+        1.0 - 3.0 * t + 3.0 * t2 - t3,
+        4.0 - 6.0 * t2 + 3.0 * t3,
+        1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3,
+        t3,
+    ];
+    (x as usize, weights.map(|weight| weight / 6.0))
+}

@@ -1,0 +1,105 @@
+//! Flat textured rectangles, and what a ray sees of them.
+
+use nalgebra::Vector3;
+
+use super::texture::Texture;
+
+/// A rectangle that is visible from the side its normal points to.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    corner: Vector3<f32>,
+    /// Unit vectors along the texture's columns and rows; the normal is u x v.
+    u_axis: Vector3<f32>,
+    v_axis: Vector3<f32>,
+    normal: Vector3<f32>,
+    width_m: f32,
+    height_m: f32,
+    texture: Texture,
+}
+
+/// A surface as seen from one point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SeenSurface<'a> {
+    surface: &'a Surface,
+    /// Height of the viewpoint above the surface's plane in metres; positive on the visible side.
+    height_m: f32,
+    /// The viewpoint's foot in the surface's plane.
+    u_m: f32,
+    v_m: f32,
+}
+
+/// Where a ray meets a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit<'a> {
+    surface: &'a Surface,
+    pub(super) distance_m: f32,
+    u_m: f32,
+    v_m: f32,
+    /// Cosine between the ray and the surface's normal.
+    cos_incidence: f32,
+}
+
+impl Surface {
+    /// A rectangle with its texture's origin at `corner`; `u_axis` and `v_axis` are orthogonal unit
+    /// vectors.
+    pub(super) fn new(
+        corner: Vector3<f32>,
+        (u_axis, width_m): (Vector3<f32>, f32),
+        (v_axis, height_m): (Vector3<f32>, f32),
+        texture: Texture,
+    ) -> Self {
+        Self {
+            corner,
+            u_axis,
+            v_axis,
+            normal: u_axis.cross(&v_axis),
+            width_m,
+            height_m,
+            texture,
+        }
+    }
+
+    /// The surface from `viewpoint`, or `None` if that shows its back.
+    pub(super) fn seen_from(&self, viewpoint: Vector3<f32>) -> Option<SeenSurface<'_>> {
+        let offset = viewpoint - self.corner;
+        let height_m = offset.dot(&self.normal);
+        (height_m > 0.0).then(|| SeenSurface {
+            surface: self,
+            height_m,
+            u_m: offset.dot(&self.u_axis),
+            v_m: offset.dot(&self.v_axis),
+        })
+    }
+}
+
+impl<'a> SeenSurface<'a> {
+    /// Where the ray in unit `direction` meets the surface, if nearer than `limit_m`.
+    pub(super) fn hit(&self, direction: &Vector3<f32>, limit_m: f32) -> Option<Hit<'a>> {
+        let surface = self.surface;
+        let cos_incidence = -direction.dot(&surface.normal);
+        if cos_incidence * limit_m <= self.height_m {
+            return None;
+        }
+        let distance_m = self.height_m / cos_incidence;
+        let u_m = self.u_m + distance_m * direction.dot(&surface.u_axis);
+        let v_m = self.v_m + distance_m * direction.dot(&surface.v_axis);
+        let inside =
+            (0.0..=surface.width_m).contains(&u_m) && (0.0..=surface.height_m).contains(&v_m);
+        inside.then_some(Hit {
+            surface,
+            distance_m,
+            u_m,
+            v_m,
+            cos_incidence,
+        })
+    }
+}
+
+impl Hit<'_> {
+    /// Radiance towards a pixel that is `width_rad` wide: the texture, averaged over the pixel's
+    /// footprint. The footprint is a slanted ellipse; a circle of the same area stands for it.
+    pub(super) fn radiance(&self, width_rad: f32) -> f32 {
+        let footprint_m = self.distance_m * width_rad / self.cos_incidence.sqrt();
+        self.surface.texture.sample(self.u_m, self.v_m, footprint_m)
+    }
+}

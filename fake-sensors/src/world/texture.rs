@@ -1,0 +1,132 @@
+//! Prefiltered grey textures: a mip pyramid, sampled trilinearly.
+
+/// A grey picture on a surface, in radiance, with its smaller copies.
+#[derive(Clone, Debug)]
+pub struct Texture {
+    /// Full resolution first; each next level averages 2 x 2 texels.
+    levels: Vec<Level>,
+    texels_per_m: f32,
+}
+
+#[derive(Clone, Debug)]
+struct Level {
+    width: usize,
+    height: usize,
+    texels: Vec<f32>,
+}
+
+impl Texture {
+    /// A texture of `width` columns, `texels` given row by row from the surface's origin.
+    pub(super) fn new(width: usize, texels: Vec<f32>, texels_per_m: f32) -> Self {
+        let height = texels.len() / width;
+        let mut levels = vec![Level {
+            width,
+            height,
+            texels,
+        }];
+        while let Some(next) = levels.last().and_then(Level::halved) {
+            levels.push(next);
+        }
+        Self {
+            levels,
+            texels_per_m,
+        }
+    }
+
+    /// Radiance at (`u_m`, `v_m`), averaged over about `footprint_m`.
+    pub(super) fn sample(&self, u_m: f32, v_m: f32, footprint_m: f32) -> f32 {
+        let (u, v) = (u_m * self.texels_per_m, v_m * self.texels_per_m);
+        let top = (self.levels.len() - 1) as f32;
+        let lod = log2(footprint_m * self.texels_per_m).clamp(0.0, top);
+        let (fine, blend) = (lod as usize, lod - lod.floor());
+        let sharp = self.levels[fine].bilinear(u, v, fine);
+        match self.levels.get(fine + 1) {
+            Some(coarse) => sharp + blend * (coarse.bilinear(u, v, fine + 1) - sharp),
+            None => sharp,
+        }
+    }
+}
+
+impl Level {
+    /// `u`, `v` in texels of level 0, whose texel (0, 0) is centred at (0.5, 0.5).
+    fn bilinear(&self, u: f32, v: f32, level: usize) -> f32 {
+        let scale = 1.0 / (1_u32 << level) as f32;
+        let (left, right, across) = neighbours(u * scale, self.width);
+        let (low, high, up) = neighbours(v * scale, self.height);
+        let row = |v: usize| {
+            let texels = &self.texels[v * self.width..(v + 1) * self.width];
+            texels[left] + across * (texels[right] - texels[left])
+        };
+        let low_row = row(low);
+        low_row + up * (row(high) - low_row)
+    }
+
+    /// The next coarser level; the last column or row of an odd size is averaged with itself.
+    fn halved(&self) -> Option<Self> {
+        if self.width < 2 || self.height < 2 {
+            return None;
+        }
+        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let at = |u: usize, v: usize| {
+            self.texels[v.min(self.height - 1) * self.width + u.min(self.width - 1)]
+        };
+        let texels = (0..width * height)
+            .map(|index| {
+                let (u, v) = (2 * (index % width), 2 * (index / width));
+                0.25 * (at(u, v) + at(u + 1, v) + at(u, v + 1) + at(u + 1, v + 1))
+            })
+            .collect();
+        Some(Self {
+            width,
+            height,
+            texels,
+        })
+    }
+}
+
+/// The two texels around coordinate `x` and the weight of the second, clamped to the edge.
+fn neighbours(x: f32, count: usize) -> (usize, usize, f32) {
+    let x = (x - 0.5).clamp(0.0, (count - 1) as f32);
+    let first = x as usize;
+    (first, (first + 1).min(count - 1), x - x.floor())
+}
+
+/// log2, exact at powers of two and linear between them (error below 0.09): picks mip levels.
+fn log2(x: f32) -> f32 {
+    const MANTISSA: f32 = (1_u32 << 23) as f32;
+    const BIAS: f32 = 127.0;
+    x.to_bits() as f32 / MANTISSA - BIAS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn checkerboard() -> Texture {
+        let texels = (0..64 * 64).map(|i| ((i % 64 + i / 64) % 2) as f32);
+        Texture::new(64, texels.collect(), 10.0)
+    }
+
+    #[test]
+    fn a_footprint_of_many_texels_sees_their_mean() {
+        for i in 0..20 {
+            let grey = checkerboard().sample(0.31 * i as f32, 2.0, 0.4);
+            assert!((grey - 0.5).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_small_footprint_at_a_texel_centre_sees_that_texel() {
+        assert_eq!(checkerboard().sample(0.15, 0.05, 0.01), 1.0);
+        assert_eq!(checkerboard().sample(0.25, 0.05, 0.01), 0.0);
+    }
+
+    #[test]
+    fn the_logarithm_is_exact_at_powers_of_two_and_close_between() {
+        for exponent in -6..6 {
+            let power = libm::exp2f(exponent as f32);
+            assert_eq!(log2(power), exponent as f32);
+            assert!((log2(1.4 * power) - libm::log2f(1.4 * power)).abs() < 0.09);
+        }
+    }
+}
