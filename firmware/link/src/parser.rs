@@ -164,3 +164,89 @@ impl Parser {
         self.held = Vec::from_slice(rest).unwrap_or_default();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Counters, Parser};
+    use crate::Mode;
+    use crate::frame::Encoded;
+    use crate::message::{Command, Message, State, Vector};
+
+    fn follow() -> Encoded {
+        let command = Mode::Follow.byte();
+        Message::Command(Command {
+            command,
+            ..Command::default()
+        })
+        .encode()
+    }
+
+    /// Counters after `bytes`, in front of a good command of 10 bytes.
+    fn counted(bytes: &[u8]) -> Counters {
+        let mut parser = Parser::new();
+        assert_eq!(parser.frames(bytes).count(), 0);
+        assert_eq!(parser.frames(&follow()).count(), 1, "the command is found");
+        parser.counters()
+    }
+
+    /// A vector whose byte at `offset` has become `value`.
+    fn vector_with(offset: usize, value: u8) -> Encoded {
+        let mut bytes = Message::Vector(Vector::default()).encode();
+        bytes[offset] = value;
+        bytes
+    }
+
+    #[test]
+    fn each_reason_to_refuse_a_frame_has_its_counter() {
+        let one_of_29 = Counters {
+            frames_ok: 1,
+            bytes_skipped: 29,
+            ..Counters::default()
+        };
+        let expected = |reason: fn(&mut Counters)| {
+            let mut counters = one_of_29;
+            reason(&mut counters);
+            counters
+        };
+        let bad_length = expected(|c| c.bad_length = 1);
+        let wrong_class = expected(|c| c.wrong_class = 1);
+        let unknown_message = expected(|c| c.unknown_message = 1);
+        let wrong_size = expected(|c| c.wrong_size = 1);
+        let bad_checksum = expected(|c| c.bad_checksum = 1);
+        assert_eq!(counted(&vector_with(1, 7)), bad_length);
+        assert_eq!(counted(&vector_with(4, 4)), wrong_class);
+        assert_eq!(counted(&vector_with(5, 16)), unknown_message);
+        assert_eq!(counted(&vector_with(1, 30)), wrong_size);
+        assert_eq!(counted(&vector_with(20, 1)), bad_checksum);
+    }
+
+    #[test]
+    fn a_start_byte_that_claims_255_bytes_does_not_hold_up_a_command() {
+        // Header of no message of this link: it is refused with its fifth byte.
+        let mut parser = Parser::new();
+        assert_eq!(parser.frames(&[0x99, 0xff]).count(), 0);
+        assert_eq!(parser.frames(&follow()).count(), 1);
+    }
+
+    #[test]
+    fn a_command_behind_a_cut_state_comes_out_when_the_wire_falls_silent() {
+        let state = Message::State(State::default()).encode();
+        let mut parser = Parser::new();
+        assert_eq!(parser.frames(&state[..12]).count(), 0);
+        assert_eq!(parser.frames(&follow()).count(), 0, "it may be the state");
+        parser.give_up();
+        assert_eq!(parser.frames(&[]).count(), 1);
+        assert_eq!(parser.counters().cut_short, 1);
+        assert_eq!(parser.counters().bytes_skipped, 12);
+    }
+
+    #[test]
+    fn what_is_not_asked_for_stays_with_the_caller() {
+        let mut two = follow();
+        two.extend(follow());
+        let mut parser = Parser::new();
+        let mut bytes = &two[..];
+        assert!(parser.next_frame(&mut bytes).is_some());
+        assert_eq!(bytes, &follow()[..]);
+    }
+}
