@@ -5,7 +5,7 @@ mod render;
 mod sensor;
 pub mod tcm8230;
 
-pub use lens::{Direction, PanoramicLens};
+pub use lens::{Direction, PanoramicLens, View};
 pub use render::{AnnulusRenderer, Pose};
 pub use sensor::{Exposure, ImageSensor, ImageTuning, MAX_EXPOSURE_LINES};
 
@@ -55,7 +55,7 @@ impl PanoramicCamera {
 
     /// Sets the sensor's image tuning; the default is that of an initialised chip.
     pub fn set_tuning(&mut self, tuning: ImageTuning) {
-        self.sensor.tuning = tuning;
+        self.sensor.set_tuning(tuning);
     }
 
     /// Takes frame `frame_number` from `pose` (of the optic, whose centre is the camera's).

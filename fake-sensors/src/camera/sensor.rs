@@ -62,24 +62,35 @@ impl Default for ImageTuning {
     }
 }
 
+/// The sensor's converter has 10 bits.
+const CONVERTER_LEVELS: usize = 1 << 10;
+
 impl ImageTuning {
-    /// Luma of a pixel that is filled to `fraction` of saturation (0..=1).
-    fn luma(&self, fraction: f32) -> f32 {
-        let linear = (fraction * self.digital_gain).clamp(0.0, 1.0);
+    /// Luma of every converter level.
+    fn tone_curve(&self) -> Vec<u8> {
+        let top = (CONVERTER_LEVELS - 1) as f32;
+        (0..CONVERTER_LEVELS)
+            .map(|level| self.luma(level as f32 / top))
+            .collect()
+    }
+
+    /// Luma of a pixel at `fraction` of the converter's range (0..=1).
+    fn luma(&self, fraction: f32) -> u8 {
+        let linear = (fraction * self.digital_gain).min(1.0);
         let shaped = if self.gamma {
             libm::powf(linear, GAMMA)
         } else {
             linear
         };
-        255.0 * self.contrast * shaped + self.black_level
+        // The cast saturates at 0 and 255.
+        (255.0 * self.contrast * shaped + self.black_level + 0.5) as u8
     }
 }
 
 /// Turns radiance into frames.
 #[derive(Clone, Debug)]
 pub struct ImageSensor {
-    /// The image tuning in effect.
-    pub tuning: ImageTuning,
+    tone_curve: Vec<u8>,
     vignetting: Vec<f32>,
     /// The start of the noise; each frame has a stream of its own.
     noise: ChaCha8Rng,
@@ -97,11 +108,16 @@ impl ImageSensor {
             })
             .collect();
         Self {
-            tuning: ImageTuning::default(),
+            tone_curve: ImageTuning::default().tone_curve(),
             vignetting,
             noise: ChaCha8Rng::seed_from_u64(seed),
             noise_bits: vec![[0; 4]; WIDTH * HEIGHT],
         }
+    }
+
+    /// Sets the image tuning.
+    pub fn set_tuning(&mut self, tuning: ImageTuning) {
+        self.tone_curve = tuning.tone_curve();
     }
 
     /// Forms frame `frame_number` from `radiance` ([`WIDTH`] x [`HEIGHT`], row by row).
@@ -117,16 +133,17 @@ impl ImageSensor {
         noise.fill_bytes(self.noise_bits.as_flattened_mut());
 
         let electrons_per_radiance = FULL_WELL_E * f32::from(exposure.lines) / WHITE_LINES;
-        let fraction_per_electron = exposure.gain / FULL_WELL_E;
+        let top = CONVERTER_LEVELS - 1;
+        let levels_per_electron = exposure.gain * top as f32 / FULL_WELL_E;
         let (pixels, _) = frame.as_chunks_mut::<2>();
         let lit = radiance.iter().zip(&self.vignetting);
         for ((pixel, (light, shading)), &bits) in pixels.iter_mut().zip(lit).zip(&self.noise_bits) {
             let expected = light * shading * electrons_per_radiance;
             let sigma = (expected + READ_NOISE_E * READ_NOISE_E).sqrt();
             let electrons = (expected + sigma * deviate(bits)).min(FULL_WELL_E);
-            let luma = self.tuning.luma(electrons * fraction_per_electron);
-            // The cast saturates at 0 and 255.
-            *pixel = [NEUTRAL, (luma + 0.5) as u8];
+            // The cast saturates at 0.
+            let level = (electrons * levels_per_electron + 0.5) as usize;
+            *pixel = [NEUTRAL, self.tone_curve[level.min(top)]];
         }
     }
 }
