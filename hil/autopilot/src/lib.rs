@@ -1,1 +1,3 @@
-//! (room under construction)
+//! The other end of the link: what a Crazyflie does with the camera board's vectors.
+
+pub mod ekf;
