@@ -1,0 +1,149 @@
+//! The navigator: commands and poses in, set-points and corrections out.
+//!
+//! On the way out it records the route; on the way back it follows the stored odometry to each
+//! snapshot, homes there by sight, realigns the pose and goes on (paper, Fig. 2C).
+
+mod follower;
+mod homing_run;
+mod mode;
+mod parameters;
+mod realignment;
+mod recorder;
+mod step;
+
+use crate::pose::Pose;
+use crate::route::Route;
+use crate::snapshot::Snapshot;
+use crate::spectrum::Spectrum;
+
+use follower::{Context, Follower};
+use realignment::Realigner;
+use recorder::Recorder;
+
+pub use mode::{Mode, Recording, UnknownCommand};
+pub use parameters::Parameters;
+pub use step::{Arrival, Correction, EVENTS_PER_STEP, Event, MapEntry, SetPoint, Source, Step};
+
+/// The whole memory and logic of route following.
+#[derive(Clone, Debug)]
+pub struct Navigator {
+    parameters: Parameters,
+    route: Route,
+    mode: Mode,
+    activity: Activity,
+    realigner: Realigner,
+}
+
+#[derive(Clone, Debug)]
+enum Activity {
+    Resting,
+    Recording(Recorder),
+    Following(Follower),
+}
+
+impl Navigator {
+    /// An idle navigator with an empty route.
+    pub const fn new(parameters: Parameters) -> Self {
+        Self::with_route(parameters, Route::new())
+    }
+
+    /// An idle navigator that knows a route.
+    pub const fn with_route(parameters: Parameters, route: Route) -> Self {
+        Self {
+            parameters,
+            route,
+            mode: Mode::Idle,
+            activity: Activity::Resting,
+            realigner: Realigner::new(),
+        }
+    }
+
+    /// Obeys a command byte. The one that is already obeyed is a retransmission and changes nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`UnknownCommand`]; the mode stays.
+    pub fn command(&mut self, byte: u8) -> Result<Mode, UnknownCommand> {
+        let mode = Mode::from_byte(byte).ok_or(UnknownCommand(byte))?;
+        if mode == self.mode {
+            return Ok(mode);
+        }
+        self.mode = mode;
+        self.activity = match mode {
+            Mode::Idle => Activity::Resting,
+            Mode::Clear => {
+                self.route.clear();
+                Activity::Resting
+            }
+            Mode::Record(what) => Activity::Recording(Recorder::new(what)),
+            Mode::FollowStay => Activity::Following(Follower::new(true)),
+            Mode::Follow => Activity::Following(Follower::new(false)),
+        };
+        Ok(mode)
+    }
+
+    /// The mode.
+    pub const fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// The byte of the last command obeyed: what is echoed, now and later.
+    pub const fn mode_byte(&self) -> u8 {
+        self.mode.byte()
+    }
+
+    /// The route memory.
+    pub const fn route(&self) -> &Route {
+        &self.route
+    }
+
+    /// The constants in force.
+    pub const fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// One step for each STATE message (10 Hz): the time (wrapping milliseconds), the autopilot's
+    /// estimate, and the newest view, aligned by that estimate's heading; none where no frame came
+    /// since the last step.
+    pub fn step(&mut self, now_ms: u32, pose: &Pose, view: Option<&Spectrum>) -> Step {
+        let mut step = Step::default();
+        if !pose.is_plausible() {
+            step.report(Event::InvalidPose);
+            return step;
+        }
+        match &mut self.activity {
+            Activity::Resting => {}
+            Activity::Recording(recorder) => {
+                recorder.step(&self.parameters, &mut self.route, pose, view, &mut step);
+            }
+            Activity::Following(follower) => {
+                let mut context = Context {
+                    parameters: &self.parameters,
+                    route: &mut self.route,
+                    realigner: &mut self.realigner,
+                    now_ms,
+                    pose,
+                    view,
+                };
+                follower.step(&mut context, &mut step);
+            }
+        }
+        step
+    }
+}
+
+/// The route's end, with the last snapshot where that is news.
+fn map_entry(route: &Route, snapshot: Option<Snapshot>) -> MapEntry {
+    // Both stacks hold fewer than 65536 entries.
+    let index = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
+    MapEntry {
+        snapshot_index: index(route.snapshots().len().saturating_sub(1)),
+        snapshot_position: route.top_snapshot_position().unwrap_or(route.tip()),
+        odometry_index: index(route.vectors().len()),
+        odometry_position: route.tip(),
+        snapshot,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,283 @@
+//! The way back: popping the stacks, leg by leg.
+
+use nalgebra::Point2;
+
+use super::homing_run::HomingRun;
+use super::map_entry;
+use super::parameters::{Parameters, has_passed};
+use super::realignment::Realigner;
+use super::step::{Correction, Event, SetPoint, Source, Step};
+use crate::pose::Pose;
+use crate::route::Route;
+use crate::spectrum::Spectrum;
+
+/// Follows from a command until the next.
+#[derive(Clone, Debug)]
+pub(super) struct Follower {
+    /// Stay at the last snapshot instead of consuming the route.
+    stays: bool,
+    phase: Phase,
+}
+
+#[derive(Clone, Debug)]
+enum Phase {
+    /// Before the first step.
+    Starting,
+    /// By odometry towards the route's tip.
+    Leg,
+    /// At the last snapshot. `done`: it has been reached, and the drone stays.
+    Homing { run: HomingRun, done: bool },
+    /// Waiting for a correction to take effect.
+    Settling {
+        since_ms: u32,
+        correction: Correction,
+    },
+    /// Nothing left to do.
+    Holding { at: Point2<f32> },
+}
+
+/// What a step has at hand.
+pub(super) struct Context<'a> {
+    pub(super) parameters: &'a Parameters,
+    pub(super) route: &'a mut Route,
+    pub(super) realigner: &'a mut Realigner,
+    pub(super) now_ms: u32,
+    pub(super) pose: &'a Pose,
+    pub(super) view: Option<&'a Spectrum>,
+}
+
+impl Follower {
+    pub(super) const fn new(stays: bool) -> Self {
+        Self {
+            stays,
+            phase: Phase::Starting,
+        }
+    }
+
+    pub(super) fn step(&mut self, context: &mut Context, step: &mut Step) {
+        match &self.phase {
+            Phase::Starting => self.start(context, step),
+            Phase::Settling {
+                since_ms,
+                correction,
+            } => {
+                let settled = has_passed(
+                    *since_ms,
+                    context.now_ms,
+                    context.parameters.settling_time_ms,
+                );
+                if settled {
+                    let at = correction.to.position;
+                    self.go_on(at, context, step);
+                }
+            }
+            _ => {}
+        }
+        if matches!(self.phase, Phase::Leg) {
+            self.advance(context, step);
+        }
+        step.vector = Some(self.set_point(context, step));
+    }
+
+    fn start(&mut self, context: &mut Context, step: &mut Step) {
+        let here = context.pose.position;
+        if context.route.is_empty() || (self.stays && context.route.snapshots().is_empty()) {
+            step.report(Event::RouteEmpty);
+            self.phase = Phase::Holding { at: here };
+        } else if self.stays {
+            self.start_homing(false, context, step);
+        } else {
+            self.start_next(here, context, step);
+        }
+    }
+
+    /// What comes after a snapshot is done with; the drone rests `at`.
+    fn go_on(&mut self, at: Point2<f32>, context: &mut Context, step: &mut Step) {
+        if self.stays {
+            self.start_homing(true, context, step);
+        } else if context.route.is_empty() {
+            self.finish(at, step);
+        } else {
+            self.start_next(at, context, step);
+        }
+    }
+
+    /// On to the next snapshot: by sight where no odometry leads there, else by odometry.
+    fn start_next(&mut self, at: Point2<f32>, context: &mut Context, step: &mut Step) {
+        let by_sight = context.route.has_snapshot_at_tip() && context.route.top_is_visual_only();
+        if by_sight {
+            self.start_homing_from(at, false, context, step);
+        } else {
+            self.start_leg(context, step);
+        }
+    }
+
+    fn start_leg(&mut self, context: &mut Context, step: &mut Step) {
+        self.phase = Phase::Leg;
+        let entry = map_entry(context.route, None);
+        step.report(Event::LegStarted {
+            height: entry.odometry_index,
+        });
+        step.map = Some(entry);
+    }
+
+    /// Pops the vectors whose ends are reached, until the next end, a snapshot or home.
+    fn advance(&mut self, context: &mut Context, step: &mut Step) {
+        let reach = context.parameters.acceptance_radius_m;
+        let mut popped = false;
+        loop {
+            let tip = context.route.tip();
+            if (context.pose.position - tip).norm() > reach {
+                break;
+            }
+            if context.route.has_snapshot_at_tip() {
+                return self.start_homing(false, context, step);
+            }
+            if context.route.pop_vector().is_none() {
+                return self.finish(tip, step);
+            }
+            popped = true;
+        }
+        if popped {
+            self.start_leg(context, step);
+        }
+    }
+
+    /// Homing at the last snapshot; without a view towards where the vectors believe it, or towards
+    /// here where they do not know.
+    fn start_homing(&mut self, done: bool, context: &mut Context, step: &mut Step) {
+        let here = context.pose.position;
+        self.start_homing_from(here, done, context, step);
+    }
+
+    fn start_homing_from(
+        &mut self,
+        at: Point2<f32>,
+        done: bool,
+        context: &mut Context,
+        step: &mut Step,
+    ) {
+        let known = context.route.top_position_is_known();
+        let position = context.route.top_snapshot_position();
+        let fallback = position.filter(|_| known).unwrap_or(at);
+        self.phase = Phase::Homing {
+            run: HomingRun::new(context.now_ms, fallback),
+            done,
+        };
+        if !done {
+            let snapshot = context.route.top_snapshot().map(|top| top.snapshot);
+            let entry = map_entry(context.route, snapshot);
+            step.report(Event::HomingStarted {
+                index: entry.snapshot_index,
+            });
+            step.map = Some(entry);
+        }
+    }
+
+    fn finish(&mut self, at: Point2<f32>, step: &mut Step) {
+        step.report(Event::RouteFinished);
+        self.phase = Phase::Holding { at };
+    }
+
+    fn set_point(&mut self, context: &mut Context, step: &mut Step) -> SetPoint {
+        let target = match &mut self.phase {
+            Phase::Homing { .. } => return self.home(context, step),
+            Phase::Settling { correction, .. } => {
+                step.correction = Some(*correction);
+                correction.to.position
+            }
+            Phase::Holding { at } => *at,
+            Phase::Leg | Phase::Starting => context.route.tip(),
+        };
+        by_odometry(target, context.pose)
+    }
+
+    fn home(&mut self, context: &mut Context, step: &mut Step) -> SetPoint {
+        let Phase::Homing { run, done } = &mut self.phase else {
+            return by_odometry(context.pose.position, context.pose);
+        };
+        let Some(top) = context.route.top_snapshot() else {
+            return by_odometry(run.target(), context.pose);
+        };
+        let snapshot = top.snapshot;
+        let set_point = run.step(
+            context.parameters,
+            &snapshot,
+            context.pose,
+            context.view,
+            step,
+        );
+        if *done {
+            return set_point;
+        }
+        let is_last = context.route.snapshots().len() == 1;
+        let limit_ms = if is_last && !self.stays {
+            context.parameters.final_homing_time_ms
+        } else {
+            context.parameters.homing_time_ms
+        };
+        let Some(by) = run.arrival(context.parameters, context.now_ms, limit_ms) else {
+            return set_point;
+        };
+        let may_realign = context
+            .realigner
+            .is_ready(context.parameters, context.now_ms);
+        // Staying is not in a hurry: it may have begun far away, and ends only where it is near.
+        let far = run.offset_m() > context.parameters.homing_step_m;
+        if !may_realign || (self.stays && far) {
+            return set_point;
+        }
+        let run = run.clone();
+        step.report(Event::Arrived { by });
+        self.leave(&run, set_point, context, step)
+    }
+
+    /// Ends homing: realigns the pose if that is possible, and consumes the snapshot.
+    fn leave(
+        &mut self,
+        run: &HomingRun,
+        set_point: SetPoint,
+        context: &mut Context,
+        step: &mut Step,
+    ) -> SetPoint {
+        let recorded = context
+            .route
+            .top_snapshot_position()
+            .filter(|_| context.route.top_position_is_known());
+        if !self.stays {
+            context.route.pop_snapshot();
+        }
+        match recorded.filter(|_| run.is_trustworthy(context.parameters)) {
+            Some(position) => {
+                let correction = context.realigner.realign(
+                    context.now_ms,
+                    context.pose,
+                    position,
+                    run.rotation(),
+                );
+                step.report(Event::Realigned {
+                    index: correction.index,
+                });
+                step.correction = Some(correction);
+                self.phase = Phase::Settling {
+                    since_ms: context.now_ms,
+                    correction,
+                };
+                by_odometry(position, context.pose)
+            }
+            None => {
+                self.go_on(run.target(), context, step);
+                set_point
+            }
+        }
+    }
+}
+
+fn by_odometry(target: Point2<f32>, pose: &Pose) -> SetPoint {
+    SetPoint {
+        source: Source::Odometry,
+        target,
+        start: pose.position,
+        delta_yaw: 0.0,
+    }
+}

@@ -1,0 +1,121 @@
+//! The way out: pushing odometry vectors and snapshots.
+
+use nalgebra::Point2;
+
+use super::mode::Recording;
+use super::parameters::Parameters;
+use super::step::{Event, Step};
+use crate::pose::Pose;
+use crate::route::{Route, RouteFull, VECTOR_SPACING_M};
+use crate::snapshot::Snapshot;
+use crate::spectrum::Spectrum;
+
+/// Records from a command until the next.
+#[derive(Clone, Debug)]
+pub(super) struct Recorder {
+    what: Recording,
+    /// The way since the last snapshot up to `corner`, metres, in chords of the vector spacing: so
+    /// the jitter of the estimate does not lengthen it.
+    way_m: f32,
+    /// Where the last chord ended; none before the first step.
+    corner: Option<Point2<f32>>,
+    /// A snapshot is to be taken of the next view.
+    snapshot_due: bool,
+    stopped: bool,
+}
+
+impl Recorder {
+    pub(super) const fn new(what: Recording) -> Self {
+        Self {
+            what,
+            way_m: 0.0,
+            corner: None,
+            // The first snapshot is taken where recording starts.
+            snapshot_due: what.snapshots,
+            stopped: false,
+        }
+    }
+
+    pub(super) fn step(
+        &mut self,
+        parameters: &Parameters,
+        route: &mut Route,
+        pose: &Pose,
+        view: Option<&Spectrum>,
+        step: &mut Step,
+    ) {
+        if self.stopped {
+            return;
+        }
+        if self.record(parameters, route, pose.position, view, step) == Err(RouteFull) {
+            self.stopped = true;
+            step.report(Event::RouteFull);
+        }
+    }
+
+    fn record(
+        &mut self,
+        parameters: &Parameters,
+        route: &mut Route,
+        position: Point2<f32>,
+        view: Option<&Spectrum>,
+        step: &mut Step,
+    ) -> Result<(), RouteFull> {
+        if self.corner.is_none() {
+            route.begin(position);
+        }
+        if self.what.odometry && (position - route.tip()).norm() >= VECTOR_SPACING_M {
+            route.extend_to(position)?;
+            step.map = Some(super::map_entry(route, None));
+        }
+        self.measure(parameters, position);
+        if let (true, Some(view)) = (self.snapshot_due, view) {
+            self.take_snapshot(route, position, view, step)?;
+        }
+        Ok(())
+    }
+
+    /// Measures the way since the last snapshot, and decides whether the next is due.
+    fn measure(&mut self, parameters: &Parameters, position: Point2<f32>) {
+        let corner = *self.corner.get_or_insert(position);
+        let chord = (position - corner).norm();
+        if chord >= VECTOR_SPACING_M {
+            self.way_m += chord;
+            self.corner = Some(position);
+        }
+        let open_chord = self.corner.map_or(0.0, |corner| (position - corner).norm());
+        let spacing = if self.what.odometry {
+            parameters.snapshot_spacing_m
+        } else {
+            parameters.sequence_spacing_m
+        };
+        if self.what.repeats_snapshots() && self.way_m + open_chord >= spacing {
+            self.snapshot_due = true;
+        }
+    }
+
+    fn take_snapshot(
+        &mut self,
+        route: &mut Route,
+        position: Point2<f32>,
+        view: &Spectrum,
+        step: &mut Step,
+    ) -> Result<(), RouteFull> {
+        if self.what.odometry {
+            // The vectors below a snapshot shall end where it is taken, not up to 0.3 m before.
+            route.extend_to(position)?;
+        }
+        let snapshot = Snapshot::quantise(view);
+        route.push_snapshot(snapshot)?;
+        self.snapshot_due = false;
+        self.way_m = 0.0;
+        self.corner = Some(position);
+        let entry = super::map_entry(route, Some(snapshot));
+        step.report(Event::SnapshotTaken {
+            index: entry.snapshot_index,
+            height: entry.odometry_index,
+        });
+        step.map = Some(entry);
+        Ok(())
+    }
+}
