@@ -1,1 +1,65 @@
-fn main() {}
+//! The camera board's firmware: what runs on the STM32F407.
+//!
+//! The pure rooms do the thinking: `sensor` knows the camera, `link` the autopilot's language,
+//! `pilot` what to do. Here are the pins, the peripherals and the tasks that connect them:
+//!
+//! ```text
+//! DCMI, DMA -> capture -> camera  --+
+//!                                   +--> vision (pilot) --> link_tx -> DMA, USART2
+//! USART2, DMA -> link_rx -----------+        |
+//!                                            +------------> exposure -> I2C2
+//! health: the watchdog is fed when all of them live
+//! ```
+#![no_std]
+#![no_main]
+
+mod board;
+mod capture;
+mod check_in;
+mod clocks;
+mod counters;
+mod executors;
+mod link_port;
+mod log;
+mod sensor_power;
+mod tasks;
+mod wires;
+
+use board::Board;
+use capture::Capture;
+use defmt_rtt as _;
+use embassy_executor::Spawner;
+use panic_probe as _;
+use pilot::{Parameters, Pilot};
+use static_cell::StaticCell;
+
+static PILOT: StaticCell<Pilot> = StaticCell::new();
+
+/// Sets up the board and starts the tasks. What can fail here fails on every boot of the same
+/// image: it is a defect of the build, and panics.
+#[embassy_executor::main]
+async fn main(spawner: Spawner) {
+    let peripherals = embassy_stm32::init(clocks::config());
+    clocks::enable_flash_accelerator();
+    clocks::enable_cycle_counter();
+    log::boot();
+
+    let board = Board::new(peripherals);
+    let (tx, rx) = defmt::unwrap!(link_port::open(board.link));
+    let pilot = match Pilot::new(&Parameters::DEFAULT) {
+        Ok(pilot) => PILOT.init(pilot),
+        Err(error) => defmt::panic!("calibration: {}", defmt::Debug2Format(&error)),
+    };
+
+    let urgent = executors::start_urgent();
+    urgent.spawn(defmt::unwrap!(tasks::link_rx::link_rx(rx)));
+    urgent.spawn(defmt::unwrap!(tasks::link_tx::link_tx(tx)));
+    urgent.spawn(defmt::unwrap!(tasks::exposure::exposure(
+        board.sensor,
+        pilot.exposure()
+    )));
+    let capture = Capture::start(board.camera);
+    urgent.spawn(defmt::unwrap!(tasks::camera::camera(capture)));
+    spawner.spawn(defmt::unwrap!(tasks::vision::vision(pilot)));
+    spawner.spawn(defmt::unwrap!(tasks::health::health(board.watchdog)));
+}

@@ -1,0 +1,145 @@
+//! The pin map: which peripheral, pin and DMA stream does what. Nothing else names a pin.
+//!
+//! DCMI, I2C and clock stand on the pins of TU Delft's stereo board (STM32F405), and, but for the
+//! clock, of published STM32F4DISCOVERY camera wirings; USART2 stays free for the autopilot.
+//! USART2 and I2C2 use DMA1: DMA2 must not serve an APB2 peripheral while it moves pixels (data
+//! corruption, errata sheet ES0182).
+
+use embassy_stm32::gpio::{AfType, Flex, Pin, Pull};
+use embassy_stm32::peripherals::{
+    DCMI, DMA1_CH2, DMA1_CH5, DMA1_CH6, DMA1_CH7, DMA2_CH1, I2C2, IWDG, PA2, PA3, PA7, PB10, PB11,
+    PD2, TIM3, USART2,
+};
+use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, i2c, usart};
+
+use crate::capture;
+
+bind_interrupts!(
+    /// Interrupt vectors and who serves them.
+    pub struct Irqs {
+        DCMI => capture::InterruptHandler;
+        I2C2_EV => i2c::EventInterruptHandler<I2C2>;
+        I2C2_ER => i2c::ErrorInterruptHandler<I2C2>;
+        USART2 => usart::InterruptHandler<USART2>;
+        DMA1_STREAM2 => dma::InterruptHandler<DMA1_CH2>;
+        DMA1_STREAM5 => dma::InterruptHandler<DMA1_CH5>;
+        DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
+        DMA1_STREAM7 => dma::InterruptHandler<DMA1_CH7>;
+    }
+);
+
+/// The alternate function of every DCMI pin (DS8626 table 9).
+const DCMI_FUNCTION: u8 = 13;
+
+/// The parallel camera bus: DCMI and the DMA stream that empties it.
+pub struct CameraPort {
+    /// Owned so that nobody else drives them; the capture speaks to their registers.
+    _owned: (Peri<'static, DCMI>, Peri<'static, DMA2_CH1>),
+    _pins: [Flex<'static>; 11],
+}
+
+/// The image sensor's clock, reset and I2C.
+pub struct SensorPort {
+    /// Makes EXTCLK on `clock_pin` (channel 2).
+    pub clock: Peri<'static, TIM3>,
+    /// EXTCLK.
+    pub clock_pin: Peri<'static, PA7>,
+    /// RESET, active low.
+    pub reset: Peri<'static, PD2>,
+    /// The control bus.
+    pub bus: SensorBus,
+}
+
+/// The image sensor's control bus. Its pull-ups, to the sensor's 2.8 V, are on the board: a pull-up
+/// or push from the processor's 3.3 V would harm the sensor.
+pub struct SensorBus {
+    /// The bus controller.
+    pub i2c: Peri<'static, I2C2>,
+    /// I2C clock.
+    pub scl: Peri<'static, PB10>,
+    /// I2C data.
+    pub sda: Peri<'static, PB11>,
+    /// I2C transmit stream.
+    pub tx_dma: Peri<'static, DMA1_CH7>,
+    /// I2C receive stream.
+    pub rx_dma: Peri<'static, DMA1_CH2>,
+}
+
+/// The wire to the autopilot.
+pub struct LinkPort {
+    /// The UART.
+    pub uart: Peri<'static, USART2>,
+    /// To the autopilot.
+    pub tx: Peri<'static, PA2>,
+    /// From the autopilot.
+    pub rx: Peri<'static, PA3>,
+    /// Transmit stream.
+    pub tx_dma: Peri<'static, DMA1_CH6>,
+    /// Receive stream.
+    pub rx_dma: Peri<'static, DMA1_CH5>,
+}
+
+/// The whole board, in the parts its tasks own.
+pub struct Board {
+    /// For the camera task.
+    pub camera: CameraPort,
+    /// For the exposure task.
+    pub sensor: SensorPort,
+    /// For the link tasks.
+    pub link: LinkPort,
+    /// For the health task.
+    pub watchdog: Peri<'static, IWDG>,
+}
+
+impl Board {
+    /// Deals out the chip.
+    pub fn new(p: Peripherals) -> Self {
+        let pins = [
+            dcmi_pin(p.PC6),  // D0
+            dcmi_pin(p.PC7),  // D1
+            dcmi_pin(p.PC8),  // D2
+            dcmi_pin(p.PC9),  // D3
+            dcmi_pin(p.PC11), // D4
+            dcmi_pin(p.PB6),  // D5
+            dcmi_pin(p.PB8),  // D6
+            dcmi_pin(p.PB9),  // D7
+            dcmi_pin(p.PB7),  // VSYNC
+            dcmi_pin(p.PA4),  // HSYNC
+            dcmi_pin(p.PA6),  // PIXCLK
+        ];
+        Self {
+            camera: CameraPort {
+                _owned: (p.DCMI, p.DMA2_CH1),
+                _pins: pins,
+            },
+            sensor: SensorPort {
+                clock: p.TIM3,
+                clock_pin: p.PA7,
+                reset: p.PD2,
+                bus: SensorBus {
+                    i2c: p.I2C2,
+                    scl: p.PB10,
+                    sda: p.PB11,
+                    tx_dma: p.DMA1_CH7,
+                    rx_dma: p.DMA1_CH2,
+                },
+            },
+            link: LinkPort {
+                uart: p.USART2,
+                tx: p.PA2,
+                rx: p.PA3,
+                tx_dma: p.DMA1_CH6,
+                rx_dma: p.DMA1_CH5,
+            },
+            watchdog: p.IWDG,
+        }
+    }
+}
+
+/// Pulled down, to the level at which the syncs say "no data": a camera that is not there, or not
+/// powered, is silent instead of noisy.
+fn dcmi_pin(pin: Peri<'static, impl Pin>) -> Flex<'static> {
+    let mut pin = Flex::new(pin);
+    pin.set_as_af_unchecked(DCMI_FUNCTION, AfType::input(Pull::Down));
+    pin
+}

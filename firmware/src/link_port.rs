@@ -1,0 +1,38 @@
+//! The wire to the autopilot: USART2, 8N1, DMA both ways.
+
+use embassy_stm32::mode::Async;
+use embassy_stm32::usart::{Config, ConfigError, RingBufferedUartRx, Uart, UartTx};
+use static_cell::ConstStaticCell;
+
+use crate::board::{Irqs, LinkPort};
+
+/// What the published camera client of the Crazyflie sets. APB1's 42 MHz divide to it within
+/// 0.02 %.
+const BAUD: u32 = 921_600;
+
+/// Bytes that may wait in the receive ring: 11 ms at 92 kB/s.
+const RING_BYTES: usize = 1024;
+
+static RING: ConstStaticCell<[u8; RING_BYTES]> = ConstStaticCell::new([0; RING_BYTES]);
+
+/// Opens the port. Receives from then on, sends nothing by itself. To be called once.
+///
+/// # Errors
+/// The UART's, where it cannot make the baud rate.
+pub fn open(
+    port: LinkPort,
+) -> Result<(UartTx<'static, Async>, RingBufferedUartRx<'static>), ConfigError> {
+    let mut config = Config::default();
+    config.baudrate = BAUD;
+    let uart = Uart::new(
+        port.uart,
+        port.rx,
+        port.tx,
+        port.tx_dma,
+        port.rx_dma,
+        Irqs,
+        config,
+    )?;
+    let (tx, rx) = uart.split();
+    Ok((tx, rx.into_ring_buffered(RING.take())))
+}

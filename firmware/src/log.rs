@@ -1,0 +1,60 @@
+//! The log lines that the rig reads by machine, and the clock they are stamped with.
+//!
+//! Their formats are an interface: a change here is a change in the rig's log reader.
+
+use embassy_time::Instant;
+
+use crate::clocks;
+use crate::counters::COUNTERS;
+
+defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
+
+/// Once, first of all: which firmware this is and how fast its cycle counter runs.
+pub fn boot() {
+    defmt::info!(
+        "cataglyphis {=str} boot, clock {=u32} Hz",
+        env!("CARGO_PKG_VERSION"),
+        clocks::CORE_HZ
+    );
+}
+
+/// Once per frame: its number since boot, what it cost in core cycles, the mean luma of its
+/// horizon (0 to 255), and the exposure that was asked for last.
+pub fn frame(number: u32, cycles: u32, luma: f32, exposure: pilot::Exposure) {
+    defmt::debug!(
+        "frame {=u32} cycles {=u32} luma {=f32} lines {=u16} gain {=f32}",
+        number,
+        cycles,
+        luma,
+        exposure.shutter_lines,
+        exposure.gain
+    );
+}
+
+/// Once per STATE message: what its decision and its answer cost in core cycles.
+pub fn state(cycles: u32) {
+    defmt::debug!("state cycles {=u32}", cycles);
+}
+
+/// Once a second: the counts since boot.
+pub fn health() {
+    let c = &COUNTERS;
+    defmt::info!(
+        "health frames {=u32} missed {=u32} torn {=u32} link ok {=u32} bad {=u32} tx dropped {=u32}",
+        c.frames.get(),
+        c.frames_missed.get(),
+        c.frames_torn.get(),
+        c.link_ok.get(),
+        c.link_bad.get(),
+        c.tx_dropped.get()
+    );
+    defmt::info!(
+        "faults broken {=u32} overruns {=u32} silent {=u32} sensor {=u32} uart {=u32} queue {=u32}",
+        c.frames_broken.get(),
+        c.overruns.get(),
+        c.camera_silent.get(),
+        c.sensor_faults.get(),
+        c.uart_errors.get(),
+        c.queue_full.get()
+    );
+}

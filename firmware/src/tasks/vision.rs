@@ -1,0 +1,76 @@
+//! The pilot's task: frames and messages in, exposures and answers out.
+
+use embassy_time::with_timeout;
+use pilot::{FrameReport, Outbox, Pilot};
+
+use crate::capture::{Frame, Integrity};
+use crate::check_in::{self, Member, check_in};
+use crate::counters::COUNTERS;
+use crate::wires::{EVENTS, EXPOSURE, Event, OUTGOING};
+use crate::{clocks, log};
+
+/// Acts on frames and messages in the order in which they came. A frame must be read before the
+/// next but one begins; a STATE must be answered before the next (100 ms). A frame that a newer
+/// one has overtaken is skipped and counted; an answer that finds no room on the way to the wire
+/// is dropped and counted.
+#[embassy_executor::task]
+pub async fn vision(pilot: &'static mut Pilot) {
+    let mut outbox = Outbox::new();
+    loop {
+        check_in(Member::Vision);
+        match with_timeout(check_in::PERIOD, EVENTS.receive()).await {
+            Ok(Event::Frame(frame)) if frame.is_newest() => see(pilot, frame),
+            Ok(Event::Frame(_)) => COUNTERS.frames_missed.count(),
+            Ok(Event::Message { at, message }) => {
+                // The pilot's clock wraps after 49 days.
+                let now_ms = at.as_millis() as u32;
+                answer(pilot, now_ms, &message, &mut outbox);
+            }
+            Err(_) => {}
+        }
+    }
+}
+
+fn see(pilot: &mut Pilot, frame: Frame) {
+    let number = frame.number();
+    let ((report, cycles), integrity) = frame.read(|bytes| {
+        let start = clocks::cycles();
+        let report = vision_frame(pilot, bytes);
+        (report, clocks::cycles().wrapping_sub(start))
+    });
+    COUNTERS.frames.count();
+    if integrity == Integrity::Torn {
+        COUNTERS.frames_torn.count();
+    }
+    if let Some(wanted) = report.exposure {
+        EXPOSURE.signal(wanted);
+    }
+    log::frame(number, cycles, report.mean_luma, pilot.exposure());
+}
+
+/// One frame through the pilot. A function of its own name, never inlined: the rig measures its
+/// cycles from outside at this symbol, and compares them with what the cycle counter says here.
+#[unsafe(no_mangle)]
+#[inline(never)]
+fn vision_frame(pilot: &mut Pilot, frame: &pilot::Frame) -> FrameReport {
+    pilot.on_frame(frame)
+}
+
+fn answer(pilot: &mut Pilot, now_ms: u32, message: &link::Message, outbox: &mut Outbox) {
+    let start = clocks::cycles();
+    pilot.on_message(now_ms, message, outbox);
+    let cycles = clocks::cycles().wrapping_sub(start);
+    if matches!(message, link::Message::State(_)) {
+        log::state(cycles);
+    }
+    send(outbox);
+}
+
+/// Hands the answers to the transmitter, all or none: half a frame would spoil the one after it.
+fn send(outbox: &mut Outbox) {
+    let bytes = outbox.bytes();
+    if OUTGOING.free_capacity() < bytes.len() || OUTGOING.try_write(bytes).is_err() {
+        COUNTERS.tx_dropped.count();
+    }
+    outbox.clear();
+}

@@ -1,0 +1,40 @@
+//! What runs between the tasks: who tells whom what, and how much of it may wait.
+
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::channel::Channel;
+use embassy_sync::pipe::Pipe;
+use embassy_sync::signal::Signal;
+use embassy_time::Instant;
+use pilot::Exposure;
+
+use crate::capture::Frame;
+
+/// What vision acts on, in the order in which it happened.
+pub enum Event {
+    /// From the camera task: a whole frame.
+    Frame(Frame),
+    /// From the link's receiver.
+    Message {
+        /// When its last byte was decoded.
+        at: Instant,
+        /// What the autopilot says.
+        message: link::Message,
+    },
+}
+
+/// Camera and link receiver to vision. One queue, so that frames and messages keep their order
+/// while vision is busy. At most two frames are of use at a time, and the autopilot sends two
+/// messages in 100 ms; the rest is for bursts after radio commands.
+pub static EVENTS: Channel<CriticalSectionRawMutex, Event, 8> = Channel::new();
+
+/// Vision to exposure: the newest wish wins.
+pub static EXPOSURE: Signal<CriticalSectionRawMutex, Exposure> = Signal::new();
+
+/// Camera to exposure: no frames come although the sensor was set up.
+pub static SENSOR_SILENT: Signal<CriticalSectionRawMutex, ()> = Signal::new();
+
+/// Exposure to camera: the sensor was set up again, and so many frames show nothing yet.
+pub static SENSOR_STARTED: Signal<CriticalSectionRawMutex, u8> = Signal::new();
+
+/// Vision to the link's transmitter. Two periods of what the autopilot can take (200 bytes each).
+pub static OUTGOING: Pipe<CriticalSectionRawMutex, 400> = Pipe::new();
