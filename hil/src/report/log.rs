@@ -1,0 +1,105 @@
+//! The log of the flight, with a box for each level.
+
+use core::fmt::Write;
+
+use maud::{Markup, PreEscaped, html};
+
+use super::number;
+use crate::record::LogLine;
+
+/// Lines shown at most; finer levels give way first.
+const MOST_LINES: usize = 2500;
+
+/// Characters of a line that are shown.
+const MOST_CHARACTERS: usize = 400;
+
+/// From the gravest to the finest.
+const LEVELS: [&str; 5] = ["error", "warn", "info", "debug", "trace"];
+
+/// The log, folded away. Boxes hide and show levels without any script.
+pub fn log(lines: &[LogLine]) -> Markup {
+    let finest = finest_shown(lines);
+    let shown: Vec<&LogLine> = lines
+        .iter()
+        .filter(|line| rank(line) <= finest)
+        .take(MOST_LINES)
+        .collect();
+    let left_out = lines.len() - shown.len();
+    html! {
+        details.log {
+            summary { (number::grouped(lines.len() as u64)) " lines" }
+            style { (PreEscaped(hiding_rules())) }
+            @for (level, count) in counts(&shown) {
+                input type="checkbox" id=(format!("log-{level}")) checked;
+                label for=(format!("log-{level}")) { " " (level) " " (number::grouped(count as u64)) }
+            }
+            @if left_out > 0 {
+                p.note { (number::grouped(left_out as u64)) " lines, the finest levels first, are left out here to keep the page small." }
+            }
+            ol { @for line in shown {
+                li class=(level(line)) {
+                    span { (number::fixed(line.t, 3)) }
+                    span { (line.source) }
+                    span { (line.level) }
+                    span { (shortened(&line.text)) }
+                }
+            } }
+        }
+    }
+}
+
+/// The finest level at which the lines fit; the gravest always stays.
+fn finest_shown(lines: &[LogLine]) -> usize {
+    let fits =
+        |finest: &usize| lines.iter().filter(|line| rank(line) <= *finest).count() <= MOST_LINES;
+    (0..LEVELS.len()).rev().find(fits).unwrap_or(0)
+}
+
+fn counts(shown: &[&LogLine]) -> Vec<(&'static str, usize)> {
+    let count = |level: &'static str| {
+        (
+            level,
+            shown
+                .iter()
+                .filter(|line| self::level(line) == level)
+                .count(),
+        )
+    };
+    LEVELS
+        .into_iter()
+        .map(count)
+        .filter(|(_, count)| *count > 0)
+        .collect()
+}
+
+/// The line's level; unknown ones count as info.
+fn level(line: &LogLine) -> &'static str {
+    LEVELS[rank(line)]
+}
+
+fn rank(line: &LogLine) -> usize {
+    const INFO: usize = 2;
+    let is_level = |level: &&str| level.eq_ignore_ascii_case(&line.level);
+    LEVELS
+        .iter()
+        .position(|level| is_level(&level))
+        .unwrap_or(INFO)
+}
+
+fn hiding_rules() -> String {
+    LEVELS.iter().fold(String::new(), |mut css, level| {
+        // Writing to a String cannot fail.
+        let _ = write!(
+            css,
+            "#log-{level}:not(:checked)~ol .{level}{{display:none}}"
+        );
+        css
+    })
+}
+
+fn shortened(text: &str) -> String {
+    match text.char_indices().nth(MOST_CHARACTERS) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}

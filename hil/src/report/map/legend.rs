@@ -1,0 +1,101 @@
+//! The column beside the map: what the lines mean, north, and the scale.
+
+use maud::{Markup, html};
+
+use super::view::View;
+use crate::record::Phase;
+use crate::report::number;
+use crate::report::phase;
+use crate::report::svg::px;
+use crate::report::ticks;
+
+/// Height of one entry, user units.
+const ROW: f64 = 23.0;
+
+/// Number of entries.
+const ROWS: usize = 11;
+
+/// Height of the whole legend, user units.
+pub const HEIGHT: f64 = ROW * ROWS as f64;
+
+/// Explains every kind of mark on the map, from the given place downwards.
+pub fn legend(left: f64, top: f64) -> Markup {
+    let line = |class: &'static str| html! { path class=(class) d="M0 0h34" {} };
+    let entries: [(Markup, &str); ROWS] = [
+        (
+            line(phase::line_class(Phase::Outbound)),
+            phase::label(Phase::Outbound),
+        ),
+        (
+            line(phase::line_class(Phase::Odometry)),
+            phase::label(Phase::Odometry),
+        ),
+        (
+            line(phase::line_class(Phase::Homing)),
+            phase::label(Phase::Homing),
+        ),
+        (
+            html! { path class="arrow s-homing" d="M3 0h26m-5 -3.5l5 3.5l-5 3.5" {} },
+            "homing vectors",
+        ),
+        (dot(), "snapshots, numbered"),
+        (home_mark([17.0, 0.0]), "home: the true start"),
+        (end_mark([17.0, 0.0]), "end of the flight"),
+        (line("line estimate s-muted"), "where it believed to be"),
+        (
+            line("line uncorrected s-uncorrected"),
+            "belief without the camera",
+        ),
+        (
+            html! { path class="route s-route" d="M4 0h26" {} },
+            "scripted route",
+        ),
+        (
+            html! { path class="wall s-soft" d="M2 0h30" {} },
+            "walls and panels",
+        ),
+    ];
+    html! {
+        @for (row, (mark, label)) in entries.into_iter().enumerate() {
+            g transform=(format!("translate({} {})", px(left), px(top + ROW * row as f64 + 8.0))) {
+                (mark)
+                text class="f-ink" x="46" y="4" { (label) }
+            }
+        }
+    }
+}
+
+fn dot() -> Markup {
+    html! {
+        circle class="dot f-paper s-ink" cx="13" cy="0" r="4" {}
+        text class="f-ink s-paper halo tiny" x="20" y="-2" { "7" }
+    }
+}
+
+/// The true start: a ring.
+pub fn home_mark([x, y]: [f64; 2]) -> Markup {
+    html! { circle class="dot s-ink" fill="none" stroke-width="2" cx=(px(x)) cy=(px(y)) r="8" {} }
+}
+
+/// Where the flight ended: a filled square on its corner.
+pub fn end_mark([x, y]: [f64; 2]) -> Markup {
+    let data = format!("M{} {}l5.5 5.5l-5.5 5.5l-5.5 -5.5z", px(x), px(y - 5.5));
+    html! { path class="f-ink s-paper" stroke-width="1.2" d=(data) {} }
+}
+
+/// A bar of a round length, and an arrow to the north, in the lower corners of the map.
+pub fn scale_and_north(view: &View) -> Markup {
+    let metres = ticks::nice_step(view.west.span(), 6);
+    let length = metres * view.scale;
+    let frame = view.frame;
+    let (x, y) = (frame.left + 16.0, frame.top + frame.height - 16.0);
+    let text = format!("{} m", number::fixed(metres, usize::from(metres < 1.0)));
+    let north = frame.left + frame.width - 22.0;
+    html! {
+        path class="line s-paper" stroke-width="6" opacity=".8" d=(format!("M{} {}h{}", px(x - 3.0), px(y), px(length + 6.0))) {}
+        path class="line s-ink" stroke-width="1.6" d=(format!("M{} {}v5h{}v-5", px(x), px(y - 5.0), px(length))) {}
+        text class="f-ink s-paper halo middle" x=(px(x + length / 2.0)) y=(px(y - 6.0)) { (text) }
+        path class="f-ink s-paper" d=(format!("M{} {}l6 16l-6 -4l-6 4z", px(north), px(y - 22.0))) {}
+        text class="f-ink s-paper halo middle" x=(px(north)) y=(px(y + 6.0)) { "N" }
+    }
+}

@@ -1,0 +1,143 @@
+//! The world from above with the flight in it.
+
+mod labels;
+mod layers;
+mod legend;
+mod view;
+
+use maud::{Markup, html};
+
+use self::view::View;
+use super::svg::px;
+use super::{number, style};
+use crate::record::Recording;
+use crate::summary::Summary;
+
+/// User units across, map and legend.
+const WIDTH: f64 = 1048.0;
+/// Left edge of the map: room for the labels of the axis.
+const LEFT: f64 = 46.0;
+/// Width of the legend's column with its gap.
+const LEGEND: f64 = 228.0;
+/// Least and largest height of the map.
+const HEIGHTS: [f64; 2] = [400.0, 860.0];
+/// Room for the labels of the lower axis.
+const BOTTOM: f64 = 44.0;
+/// Margin of the stand-alone picture.
+const MARGIN: f64 = 24.0;
+/// Height of its title lines.
+const TITLE: f64 = 64.0;
+
+/// Homing vectors drawn at most.
+const MOST_ARROWS: usize = 360;
+
+/// The map and its legend, for the page.
+pub fn figure(recording: &Recording) -> Markup {
+    let view = View::of(recording, LEFT, 6.0, WIDTH - LEFT - LEGEND, HEIGHTS);
+    let view_box = format!(
+        "0 0 {} {}",
+        px(WIDTH),
+        px(view.frame.top + view.frame.height + BOTTOM)
+    );
+    html! {
+        svg #map viewBox=(view_box) role="img" aria-label="The world from above with the flight in it"
+            data-track=(layers::coarse_track(recording, &view)) {
+            (scene(recording, &view))
+        }
+    }
+}
+
+/// The map by itself, with title and key figures.
+pub fn picture(recording: &Recording, summary: &Summary) -> Markup {
+    let view = View::of(recording, LEFT, TITLE, WIDTH - LEFT - LEGEND, HEIGHTS);
+    let height = view.frame.top + view.frame.height + BOTTOM;
+    let (width, height) = (WIDTH + 2.0 * MARGIN, height + 2.0 * MARGIN);
+    let beside = WIDTH - LEGEND + 26.0;
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("{0} {0} {1} {2}", px(-MARGIN), px(width), px(height)))
+            width=(px(width)) height=(px(height)) role="img" aria-label=(headline(summary)) {
+            title { (headline(summary)) }
+            style { (maud::PreEscaped(style::figure())) }
+            rect class="f-paper" x=(px(-MARGIN)) y=(px(-MARGIN)) width=(px(width)) height=(px(height)) {}
+            text class="f-ink title" x="0" y="16" { (headline(summary)) }
+            text class="f-muted subtitle" x="0" y="38" { (subline(summary)) }
+            (scene(recording, &view))
+            (key_figures(summary, beside, TITLE + legend::HEIGHT + 14.0))
+        }
+    }
+}
+
+fn scene(recording: &Recording, view: &View) -> Markup {
+    html! {
+        (layers::ground(recording, view))
+        (layers::flight(recording, view, MOST_ARROWS))
+        (legend::scale_and_north(view))
+        (legend::legend(WIDTH - LEGEND + 26.0, view.frame.top))
+    }
+}
+
+/// The flight in one sentence.
+pub fn headline(summary: &Summary) -> String {
+    let out = number::fixed(summary.outbound_m, 0);
+    let memory = number::grouped(summary.memory_bytes as u64);
+    if summary.completed {
+        let error = number::fixed(summary.home_error_m, 2);
+        format!(
+            "{out} m out and home again, to within {error} m, on {memory} bytes of route memory"
+        )
+    } else {
+        format!("{out} m out, not home again: {}", summary.outcome)
+    }
+}
+
+fn subline(summary: &Summary) -> String {
+    let how = if summary.homing == "odometry" {
+        "odometry alone"
+    } else {
+        "snapshots and odometry"
+    };
+    format!(
+        "{how} · world {} · route {} · a snapshot every {} m · seed {} · {}",
+        summary.world,
+        summary.route,
+        number::fixed(summary.spacing_m, 2),
+        summary.seed,
+        summary.backend,
+    )
+}
+
+/// Four figures below the legend of the picture.
+fn key_figures(summary: &Summary, left: f64, top: f64) -> Markup {
+    let figures = [
+        (
+            number::fixed(summary.home_error_m, 2),
+            "m",
+            "from home at the end",
+        ),
+        (
+            number::fixed(summary.odometry_only_error_m, 2),
+            "m",
+            "by odometry alone",
+        ),
+        (
+            number::fixed(summary.cross_track_rms_m, 2),
+            "m",
+            "RMS off the way out",
+        ),
+        (
+            number::fixed(summary.bytes_per_m, 1),
+            "B/m",
+            "of route memory",
+        ),
+    ];
+    html! {
+        @for (row, (value, unit, label)) in figures.into_iter().enumerate() {
+            @let y = top + 48.0 * row as f64 + 20.0;
+            text x=(px(left)) y=(px(y)) {
+                tspan class="f-ink big" { (value) }
+                tspan class="f-muted" dx="5" { (unit) }
+            }
+            text class="f-muted" x=(px(left)) y=(px(y + 17.0)) { (label) }
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! The route memory byte by byte: snapshots, odometry counts, odometry vectors.
+
+use maud::{Markup, html};
+
+use super::svg::px;
+use super::{horizon, number};
+use crate::record::{OdometryMark, Recording, SnapshotMark};
+
+/// Bytes of an odometry count (uint16).
+const COUNT_BYTES: usize = 2;
+/// Bytes of an odometry vector (two int8).
+const VECTOR_BYTES: usize = 2;
+/// Metres of one count of an odometry vector (van Dijk et al. 2024, Fig. 8).
+const METRES_PER_COUNT: f64 = 0.1;
+/// Size of the bars above the bytes: user units per byte, and in height.
+const BAR: [f64; 2] = [10.0, 30.0];
+
+/// Bytes by their use.
+struct Shares {
+    snapshots: usize,
+    counts: usize,
+    vectors: usize,
+}
+
+impl Shares {
+    fn of(recording: &Recording) -> Self {
+        let snapshots = &recording.snapshots;
+        Self {
+            snapshots: snapshots.iter().map(|mark| mark.coefficients.len()).sum(),
+            counts: COUNT_BYTES * snapshots.len(),
+            vectors: VECTOR_BYTES * recording.odometry.len(),
+        }
+    }
+
+    fn without_counts(&self) -> usize {
+        self.snapshots + self.vectors
+    }
+
+    fn with_counts(&self) -> usize {
+        self.without_counts() + self.counts
+    }
+}
+
+/// Totals, then every snapshot with the vectors that lead back to it.
+pub fn memory(recording: &Recording, outbound_m: f64) -> Markup {
+    if recording.snapshots.is_empty() && recording.odometry.is_empty() {
+        return html! { p.note { "Nothing was stored." } };
+    }
+    let snapshots = &recording.snapshots;
+    let full = horizon::largest_deviation(snapshots.iter().map(|mark| &mark.coefficients[..]));
+    let coefficients = snapshots
+        .iter()
+        .map(|mark| mark.coefficients.len())
+        .max()
+        .unwrap_or(0);
+    html! {
+        (totals(recording, outbound_m))
+        div.scroll { table.memory {
+            (header(coefficients))
+            @if let Some(first) = snapshots.first() {
+                @let before = vectors(&recording.odometry, 0, usize::from(first.odometry_count));
+                @if !before.is_empty() { (row_without_snapshot(&before, coefficients)) }
+            }
+            @for (place, mark) in snapshots.iter().enumerate() {
+                @let above = snapshots.get(place + 1).map_or(usize::MAX, |next| usize::from(next.odometry_count));
+                @let vectors = vectors(&recording.odometry, usize::from(mark.odometry_count), above);
+                (row(mark, &vectors, coefficients, full))
+            }
+            @if snapshots.is_empty() {
+                (row_without_snapshot(&vectors(&recording.odometry, 0, usize::MAX), coefficients))
+            }
+        } }
+    }
+}
+
+fn totals(recording: &Recording, outbound_m: f64) -> Markup {
+    let shares = Shares::of(recording);
+    let per_metre = |bytes: usize| number::fixed(bytes as f64 / outbound_m, 1);
+    let bytes = |bytes: usize| number::grouped(bytes as u64);
+    let rows = [
+        (
+            "b-snapshot",
+            shares.snapshots,
+            "snapshots",
+            recording.snapshots.len(),
+        ),
+        (
+            "b-count",
+            shares.counts,
+            "odometry counts",
+            recording.snapshots.len(),
+        ),
+        (
+            "b-vector",
+            shares.vectors,
+            "odometry vectors",
+            recording.odometry.len(),
+        ),
+    ];
+    html! {
+        p {
+            b { (bytes(shares.with_counts())) " bytes" }
+            " with the odometry counts, " (per_metre(shares.with_counts())) " for each metre of the way out; "
+            b { (bytes(shares.without_counts())) " bytes" }
+            " without, " (per_metre(shares.without_counts())) " per metre."
+        }
+        div.shares aria-hidden="true" {
+            @for (class, share, _, _) in rows {
+                @if share > 0 { span class=(class) style=(format!("flex:{share}")) {} }
+            }
+        }
+        ul.key {
+            @for (class, share, label, count) in rows {
+                li { i class=(class) {} (count) " " (label) ": " (bytes(share)) " B" }
+            }
+        }
+    }
+}
+
+fn header(coefficients: usize) -> Markup {
+    let half = coefficients / 2;
+    html! {
+        thead { tr {
+            th { "snapshot" }
+            th.strip { "remembered horizon" br; "S · W · N · E · S" }
+            @for index in 0..coefficients {
+                th class=(byte_class(index, half)) {
+                    @if index < half { "a" sub { (index + 1) } } @else { "b" sub { (index + 1 - half) } }
+                }
+            }
+            th.b1 { "count" br; "2 B" }
+            th { "vectors back to it" br; "2 B each; north, west in m" }
+        } }
+    }
+}
+
+/// One snapshot: bars, bytes, and the same bytes as signed numbers.
+fn row(mark: &SnapshotMark, vectors: &[OdometryMark], coefficients: usize, full: f64) -> Markup {
+    let half = mark.coefficients.len() / 2;
+    let count = mark.odometry_count.to_le_bytes();
+    html! {
+        tbody {
+            tr {
+                td.who rowspan="3" {
+                    b { (mark.index) } br;
+                    span { (number::fixed(mark.t, 1)) " s" br;
+                        "x " (number::fixed(mark.truth.x, 2)) br;
+                        "y " (number::fixed(mark.truth.y, 2)) br;
+                        "off by " (number::fixed(mark.believed.distance(&mark.truth), 2)) }
+                }
+                td.strip rowspan="3" { (horizon::glyph(&mark.coefficients, full)) }
+                td.bars colspan=(coefficients) { (bars(&mark.coefficients)) }
+                td.mono.b1 rowspan="3" {
+                    (number::hex(count[0])) " " (number::hex(count[1])) br;
+                    span.low { (mark.odometry_count) }
+                }
+                td.hops.mono rowspan="3" { (hops(vectors)) }
+            }
+            tr { @for (index, value) in mark.coefficients.iter().enumerate() {
+                td class=(format!("mono {}", byte_class(index, half))) { (number::hex(value.to_le_bytes()[0])) }
+            } }
+            tr { @for (index, value) in mark.coefficients.iter().enumerate() {
+                td class=(format!("mono low {}", byte_class(index, half))) { (number::signed(*value)) }
+            } }
+        }
+    }
+}
+
+/// Vectors that no snapshot was taken before.
+fn row_without_snapshot(vectors: &[OdometryMark], coefficients: usize) -> Markup {
+    html! {
+        tbody { tr {
+            td.who colspan=(coefficients + 3) { span { "before the first snapshot" } }
+            td.hops.mono { (hops(vectors)) }
+        } }
+    }
+}
+
+fn byte_class(index: usize, half: usize) -> &'static str {
+    if index == 0 || index == half {
+        "byte b1"
+    } else {
+        "byte"
+    }
+}
+
+/// A bar for each byte, upwards if positive.
+fn bars(coefficients: &[i8]) -> Markup {
+    let [width, height] = BAR;
+    let middle = height / 2.0;
+    let bars: String = coefficients
+        .iter()
+        .enumerate()
+        .map(|(index, value)| {
+            let x = index as f64 * width + width * 0.28;
+            let bar = -f64::from(*value) / 128.0 * middle;
+            format!(
+                "M{} {}h{}v{}h-{}z",
+                px(x),
+                px(middle),
+                px(width * 0.44),
+                px(bar),
+                px(width * 0.44)
+            )
+        })
+        .collect();
+    let all = coefficients.len() as f64 * width;
+    html! {
+        svg viewBox=(format!("0 0 {} {}", px(all), px(height))) preserveAspectRatio="none" aria-hidden="true" {
+            path class="hair s-grid" d=(format!("M0 {}H{}", px(middle), px(all))) {}
+            path class="f-homing" d=(bars) {}
+        }
+    }
+}
+
+/// The vectors with `from <= index < to`, newest first, as they are followed.
+fn vectors(odometry: &[OdometryMark], from: usize, to: usize) -> Vec<OdometryMark> {
+    let belongs = |mark: &&OdometryMark| (from..to).contains(&usize::from(mark.index));
+    odometry.iter().filter(belongs).copied().collect()
+}
+
+fn hops(vectors: &[OdometryMark]) -> Markup {
+    html! {
+        @for vector in vectors {
+            @let [x, y] = vector.counts;
+            div {
+                (number::hex(x.to_le_bytes()[0])) " " (number::hex(y.to_le_bytes()[0])) " "
+                span { (metres(x)) ", " (metres(y)) }
+            }
+        }
+    }
+}
+
+fn metres(counts: i8) -> String {
+    number::fixed(f64::from(counts) * METRES_PER_COUNT, 1)
+}
