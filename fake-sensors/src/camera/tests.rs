@@ -1,1 +1,174 @@
+use core::f32::consts::FRAC_PI_2;
+use std::sync::LazyLock;
 
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::*;
+
+const EXPOSURE: Exposure = Exposure {
+    lines: 120,
+    gain: 1.0,
+};
+
+/// Painted once for all tests.
+static WORLD: LazyLock<World> = LazyLock::new(|| World::named("arena-panels", 1).unwrap());
+
+fn world() -> World {
+    WORLD.clone()
+}
+
+fn camera(seed: u64) -> PanoramicCamera {
+    PanoramicCamera::new(world(), &PanoramicLens::default(), seed)
+}
+
+fn pose(yaw_rad: f32) -> Pose {
+    Pose {
+        position_m: Vector3::new(-1.1, 0.37, 0.5),
+        attitude: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw_rad),
+    }
+}
+
+fn in_ring(x: usize, y: usize) -> bool {
+    let centre = [x as f32 + 0.5, y as f32 + 0.5];
+    (18.0..=42.0).contains(&PanoramicLens::default().distance_from_centre(centre))
+}
+
+fn ring_luma(frame: &Frame) -> Vec<f32> {
+    (0..WIDTH * HEIGHT)
+        .filter(|index| in_ring(index % WIDTH, index / WIDTH))
+        .map(|index| f32::from(frame[2 * index + 1]))
+        .collect()
+}
+
+fn mean(values: &[f32]) -> f32 {
+    values.iter().sum::<f32>() / values.len() as f32
+}
+
+/// After a turn to the left by s, what was at bearing b + s is at bearing b. A quarter turn maps
+/// pixels on pixels: bearings grow clockwise in the image, so the image turns counter-clockwise.
+#[test]
+fn a_quarter_turn_of_the_camera_turns_the_image_by_exactly_a_quarter() {
+    let mut renderer = AnnulusRenderer::new(&PanoramicLens::default());
+    let ahead = renderer.render(&world(), &pose(0.0)).to_vec();
+    let turned = renderer.render(&world(), &pose(FRAC_PI_2)).to_vec();
+    let mut compared = 0;
+    for (x, y) in (0..WIDTH * HEIGHT).map(|index| (index % WIDTH, index / WIDTH)) {
+        if in_ring(x, y) {
+            // (dx, dy) from the centre shows what (-dy, dx) showed before the turn.
+            let (source_x, source_y) = (64 + 48 - 1 - y, x + 48 - 64);
+            let (new, old) = (turned[y * WIDTH + x], ahead[source_y * WIDTH + source_x]);
+            assert!((new - old).abs() < 1e-3, "({x}, {y}): {new} {old}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 4_000);
+}
+
+#[test]
+fn a_landmark_appears_at_its_bearing_minus_the_heading() {
+    let lens = PanoramicLens::default();
+    let mut renderer = AnnulusRenderer::new(&lens);
+    let world = world();
+    let mut horizon = |yaw_rad: f32, bearing_rad: f32| {
+        let view = View {
+            bearing_rad,
+            elevation_rad: 0.2,
+        };
+        let [x, y] = lens.project(view).map(|coordinate| coordinate as usize);
+        renderer.render(&world, &pose(yaw_rad))[y * WIDTH + x]
+    };
+    let step = core::f32::consts::TAU / 24.0;
+    let shift = 5.0 * step;
+    let mut error = 0.0;
+    let mut contrast = 0.0;
+    for n in 0..24 {
+        let bearing = n as f32 * step;
+        error += (horizon(shift, bearing) - horizon(0.0, bearing + shift)).abs();
+        contrast += (horizon(0.0, bearing) - horizon(0.0, bearing + shift)).abs();
+    }
+    assert!(error < 0.2 * contrast, "{error} {contrast}");
+}
+
+#[test]
+fn twice_the_shutter_or_the_gain_gives_twice_the_luma_above_black() {
+    let mut camera = camera(1);
+    let mut luma = |lines, gain| {
+        let exposure = Exposure { lines, gain };
+        mean(&ring_luma(camera.expose(&pose(0.0), exposure, 0))) - 12.0
+    };
+    let dim = luma(20, 1.0);
+    assert!((luma(40, 1.0) / dim - 2.0).abs() < 0.02);
+    assert!((luma(20, 2.0) / dim - 2.0).abs() < 0.02);
+}
+
+#[test]
+fn the_horizon_reaches_its_set_point_of_80_between_100_and_200_lines() {
+    for seed in 1..=3 {
+        let world = World::named("arena-panels", seed).unwrap();
+        let mut camera = PanoramicCamera::new(world, &PanoramicLens::default(), 1);
+        let mut luma = |lines| {
+            let exposure = Exposure { lines, gain: 1.0 };
+            mean(&ring_luma(camera.expose(&pose(0.0), exposure, 0)))
+        };
+        assert!(luma(100) < 80.0 && luma(200) > 80.0);
+    }
+}
+
+#[test]
+fn a_frame_depends_on_seed_and_number_alone() {
+    let frame = |seed, number| *camera(seed).expose(&pose(0.1), EXPOSURE, number);
+    assert_eq!(frame(1, 7), frame(1, 7));
+    assert_ne!(frame(1, 7), frame(2, 7));
+    assert_ne!(frame(1, 7), frame(1, 8));
+    let mut used = camera(1);
+    used.expose(&pose(1.0), EXPOSURE, 3);
+    assert_eq!(*used.expose(&pose(0.1), EXPOSURE, 7), frame(1, 7));
+}
+
+#[test]
+fn noise_is_about_two_luma_and_has_no_bias() {
+    let mut camera = camera(1);
+    let first = ring_luma(camera.expose(&pose(0.0), EXPOSURE, 1));
+    let second = ring_luma(camera.expose(&pose(0.0), EXPOSURE, 2));
+    let differences: Vec<f32> = first.iter().zip(&second).map(|(a, b)| a - b).collect();
+    let squares: Vec<f32> = differences.iter().map(|d| d * d).collect();
+    // The difference of two frames has twice the variance of one.
+    let deviation = (0.5 * mean(&squares)).sqrt();
+    assert!((1.0..3.0).contains(&deviation), "{deviation}");
+    assert!(mean(&differences).abs() < 0.2);
+}
+
+#[test]
+fn bytes_are_u_y_v_y_with_neutral_chroma_a_dark_middle_and_a_bright_rim() {
+    let mut camera = camera(1);
+    let frame = camera.expose(&pose(0.0), EXPOSURE, 0);
+    assert!(frame.iter().step_by(2).all(|&chroma| chroma == 0x80));
+    let luma = |x: usize, y: usize| frame[LINE_BYTES * y + 2 * x + 1];
+    assert!(luma(64, 48) < 25);
+    assert!(luma(64 + 46, 48) > 120);
+}
+
+#[test]
+fn a_masked_frame_is_black_with_neutral_chroma() {
+    let mut camera = camera(1);
+    camera.expose(&pose(0.0), EXPOSURE, 0);
+    let (pixels, rest) = camera.black_frame().as_chunks::<2>();
+    assert!(rest.is_empty() && pixels.iter().all(|pixel| *pixel == [0x80, 0x00]));
+}
+
+#[test]
+fn gamma_lifts_the_dark_as_its_exponent_says() {
+    let mut camera = camera(1);
+    let mut luma = |gamma| {
+        camera.set_tuning(ImageTuning {
+            gamma,
+            contrast: 1.0,
+            black_level: 0.0,
+            ..ImageTuning::default()
+        });
+        let frame = camera.expose(&pose(0.0), EXPOSURE, 0);
+        f32::from(frame[LINE_BYTES * 48 + 2 * (64 + 46) + 1]) / 255.0
+    };
+    let (linear, shaped) = (luma(false), luma(true));
+    assert!((shaped - linear.powf(0.55)).abs() < 0.01);
+}

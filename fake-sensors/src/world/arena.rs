@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use super::canvas::{Area, Canvas};
 use super::surface::Surface;
+use super::texture::Texture;
 use super::{PlanLine, Structure, World};
 use crate::random::Normal;
 
@@ -30,18 +31,18 @@ pub(super) const U_ROUTE_PANELS: [Point; 4] =
 
 /// How bright the four sides of the hall are, in order: daylight comes from one of them. The
 /// seed turns the order.
-const SIDE_LIGHT: [f32; 4] = [1.5, 0.8, 0.5, 1.0];
+const SIDE_LIGHT: [f32; 4] = [1.8, 1.1, 0.6, 1.3];
 /// Width of a place for one canvas along a wall, in metres.
 const PLACE_M: f32 = 2.0;
-/// Radiance of the hall behind the canvases.
+/// Reflectance of the hall behind the canvases.
 const HALL: f32 = 0.10;
-/// Radiance of the grass.
+/// Reflectance of the grass.
 const GRASS: f32 = 0.17;
-/// Radiance of the roof.
+/// Reflectance of the roof.
 const ROOF: f32 = 0.05;
-/// Log-contrast per octave of natural scenes: seven octaves make the 0.7 or so that photographs
-/// show in all.
-const NATURAL: f32 = 0.26;
+/// Log-contrast per octave of the printed scenes: with what is painted on them, eight octaves make
+/// the standard deviation of 0.7 or so in log-luminance that photographs of nature show.
+const NATURAL: f32 = 0.24;
 
 /// Builds the arena, with panels between consecutive `panel_ends`.
 pub(super) fn build(seed: u64, panel_ends: &[Point]) -> World {
@@ -58,7 +59,7 @@ pub(super) fn build(seed: u64, panel_ends: &[Point]) -> World {
     for side in 0..4 {
         let (from, to) = (corners[side], corners[(side + 1) % 4]);
         let light = SIDE_LIGHT[(side + daylight_from) % 4];
-        let picture = wall(&mut noise(), light);
+        let picture = wall(&mut noise()).lit_by(light);
         surfaces.push(upright(from, to, CEILING_M, picture));
         plan.push(line(Structure::Wall, from, to));
     }
@@ -66,7 +67,7 @@ pub(super) fn build(seed: u64, panel_ends: &[Point]) -> World {
         let (from, to) = (ends[0], ends[1]);
         let width = length(from, to);
         for (from, to) in [(from, to), (to, from)] {
-            let picture = screen(&mut noise(), width);
+            let picture = screen(&mut noise(), width).lit_by(1.2);
             surfaces.push(upright(from, to, PANEL_HEIGHT_M, picture));
         }
         plan.push(line(Structure::Panel, from, to));
@@ -93,17 +94,12 @@ fn length(from: Point, to: Point) -> f32 {
 }
 
 /// A vertical surface, visible to those who see `from` on their left.
-fn upright(from: Point, to: Point, height_m: f32, picture: Canvas) -> Surface {
+fn upright(from: Point, to: Point, height_m: f32, picture: Texture) -> Surface {
     let width_m = length(from, to);
     let along = Vector3::new(to[0] - from[0], to[1] - from[1], 0.0) / width_m;
     let corner = Vector3::new(from[0], from[1], 0.0);
     let up = Vector3::z();
-    Surface::new(
-        corner,
-        (along, width_m),
-        (up, height_m),
-        picture.into_texture(),
-    )
+    Surface::new(corner, (along, width_m), (up, height_m), picture)
 }
 
 fn floor(noise: &mut Normal) -> Surface {
@@ -111,7 +107,7 @@ fn floor(noise: &mut Normal) -> Surface {
     grass.weather(noise, 0.08);
     let corner = Vector3::new(SOUTH_EAST[0], SOUTH_EAST[1], 0.0);
     let (x, y) = (Vector3::x(), Vector3::y());
-    Surface::new(corner, (x, SIDE_M), (y, SIDE_M), grass.into_texture())
+    Surface::new(corner, (x, SIDE_M), (y, SIDE_M), grass.lit_by(1.0))
 }
 
 /// A dark roof with rows of lamps.
@@ -126,12 +122,12 @@ fn ceiling(noise: &mut Normal) -> Surface {
                 width: 0.4,
                 height: 1.4,
             };
-            roof.fill(lamp, 1.2);
+            roof.fill(lamp, 0.9);
         }
     }
     let corner = Vector3::new(SOUTH_EAST[0], SOUTH_EAST[1], CEILING_M);
     let (x, y) = (Vector3::x(), Vector3::y());
-    Surface::new(corner, (y, SIDE_M), (x, SIDE_M), roof.into_texture())
+    Surface::new(corner, (y, SIDE_M), (x, SIDE_M), roof.lit_by(1.0))
 }
 
 /// A number in `low..high`.
@@ -140,9 +136,9 @@ fn between(noise: &mut Normal, low: f32, high: f32) -> f32 {
 }
 
 /// A side of the arena: the hall with its windows, and before it a row of canvases and doors.
-fn wall(noise: &mut Normal, light: f32) -> Canvas {
-    let mut canvas = Canvas::new(SIDE_M, CEILING_M, HALL * light);
-    windows(&mut canvas, noise, light);
+fn wall(noise: &mut Normal) -> Canvas {
+    let mut canvas = Canvas::new(SIDE_M, CEILING_M, HALL);
+    windows(&mut canvas, noise);
     let places = (SIDE_M / PLACE_M) as usize;
     for place in 0..places {
         let width = between(noise, 1.5, 1.95);
@@ -152,7 +148,7 @@ fn wall(noise: &mut Normal, light: f32) -> Canvas {
             width,
             height: between(noise, 2.2, 3.2),
         };
-        let brightness = light * between(noise, 0.5, 1.5);
+        let brightness = between(noise, 0.4, 1.4);
         if noise.uniform() < 0.8 {
             scene(&mut canvas, noise, area, brightness);
         } else {
@@ -179,7 +175,7 @@ fn screen(noise: &mut Normal, width: f32) -> Canvas {
 }
 
 /// A band of windows high up in the hall's wall, some of them with blinds down.
-fn windows(canvas: &mut Canvas, noise: &mut Normal, light: f32) {
+fn windows(canvas: &mut Canvas, noise: &mut Normal) {
     let sill = between(noise, 3.8, 4.6);
     let mut u = between(noise, 0.2, 1.2);
     while u < SIDE_M - 1.0 {
@@ -190,7 +186,7 @@ fn windows(canvas: &mut Canvas, noise: &mut Normal, light: f32) {
             width,
             height: between(noise, 1.0, 1.8),
         };
-        canvas.fill(area, light * between(noise, 0.15, 0.9));
+        canvas.fill(area, between(noise, 0.15, 0.8));
         u += width + between(noise, 0.2, 1.5);
     }
 }

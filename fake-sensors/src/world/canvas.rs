@@ -13,6 +13,8 @@ use crate::random::Normal;
 const TEXEL_M: f32 = 0.03;
 /// Wavelength of the coarsest octave in metres: that of a whole wall.
 const COARSEST_M: f32 = 8.0;
+/// Reflectance of white paper: nothing on a canvas is brighter.
+const WHITE: f32 = 0.9;
 
 /// A rectangle on a canvas in metres: from (`u`, `v`) to (`u + width`, `v + height`).
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +25,7 @@ pub(super) struct Area {
     pub(super) height: f32,
 }
 
-/// A texture being painted; u along its width, v up its height.
+/// A texture being painted in reflectance; u along its width, v up its height.
 #[derive(Clone, Debug)]
 pub(super) struct Canvas {
     width: usize,
@@ -33,12 +35,12 @@ pub(super) struct Canvas {
 
 impl Canvas {
     /// An even canvas of the given size in metres.
-    pub(super) fn new(width_m: f32, height_m: f32, radiance: f32) -> Self {
+    pub(super) fn new(width_m: f32, height_m: f32, reflectance: f32) -> Self {
         let [width, height] = [width_m, height_m].map(|m| (m / TEXEL_M + 0.5) as usize + 1);
         Self {
             width,
             height,
-            texels: vec![radiance; width * height],
+            texels: vec![reflectance; width * height],
         }
     }
 
@@ -57,8 +59,8 @@ impl Canvas {
         }
     }
 
-    /// Paints `area` with `shade`, which gets (0..1, 0..1) within the area and the old radiance,
-    /// and gives the new.
+    /// Paints `area` with `shade`, which gets (0..1, 0..1) within the area and the old
+    /// reflectance, and gives the new.
     pub(super) fn paint(&mut self, area: Area, shade: impl Fn(f32, f32, f32) -> f32) {
         for v in 0..self.height {
             let y = ((v as f32 + 0.5) * TEXEL_M - area.v) / area.height;
@@ -76,21 +78,29 @@ impl Canvas {
     }
 
     /// Fills a rectangle.
-    pub(super) fn fill(&mut self, area: Area, radiance: f32) {
-        self.paint(area, |_, _, _| radiance);
+    pub(super) fn fill(&mut self, area: Area, reflectance: f32) {
+        self.paint(area, |_, _, _| reflectance);
     }
 
     /// Fills the ellipse that touches the edges of `area`.
-    pub(super) fn fill_ellipse(&mut self, area: Area, radiance: f32) {
+    pub(super) fn fill_ellipse(&mut self, area: Area, reflectance: f32) {
         self.paint(area, |x, y, old| {
             let (x, y) = (2.0 * x - 1.0, 2.0 * y - 1.0);
-            if x * x + y * y < 1.0 { radiance } else { old }
+            if x * x + y * y < 1.0 {
+                reflectance
+            } else {
+                old
+            }
         });
     }
 
-    /// The finished texture.
-    pub(super) fn into_texture(self) -> Texture {
-        Texture::new(self.width, self.texels, 1.0 / TEXEL_M)
+    /// The finished picture as radiance under `light`; 1 is the world's usual light.
+    pub(super) fn lit_by(self, light: f32) -> Texture {
+        let radiances = self
+            .texels
+            .into_iter()
+            .map(|texel| light * texel.min(WHITE));
+        Texture::new(self.width, radiances.collect(), 1.0 / TEXEL_M)
     }
 }
 

@@ -4,6 +4,9 @@ use nalgebra::Vector3;
 
 use super::texture::Texture;
 
+/// Surfaces reach this far beyond their edges in metres, so that no ray slips between neighbours.
+const OVERLAP_M: f32 = 1e-4;
+
 /// A rectangle that is visible from the side its normal points to.
 #[derive(Clone, Debug)]
 pub struct Surface {
@@ -83,8 +86,7 @@ impl<'a> SeenSurface<'a> {
         let distance_m = self.height_m / cos_incidence;
         let u_m = self.u_m + distance_m * direction.dot(&surface.u_axis);
         let v_m = self.v_m + distance_m * direction.dot(&surface.v_axis);
-        let inside =
-            (0.0..=surface.width_m).contains(&u_m) && (0.0..=surface.height_m).contains(&v_m);
+        let inside = within(u_m, surface.width_m) && within(v_m, surface.height_m);
         inside.then_some(Hit {
             surface,
             distance_m,
@@ -102,4 +104,8 @@ impl Hit<'_> {
         let footprint_m = self.distance_m * width_rad / self.cos_incidence.sqrt();
         self.surface.texture.sample(self.u_m, self.v_m, footprint_m)
     }
+}
+
+fn within(x_m: f32, extent_m: f32) -> bool {
+    (-OVERLAP_M..=extent_m + OVERLAP_M).contains(&x_m)
 }

@@ -86,3 +86,17 @@ fn another_seed_paints_other_textures() {
     assert_eq!(look(1), look(1));
     assert_ne!(look(1), look(2));
 }
+
+#[test]
+fn no_ray_slips_out_between_walls() {
+    let world = world("arena-panels");
+    for corner in [[2.5, 3.0], [2.5, -7.0], [-7.5, -7.0], [-7.5, 3.0]] {
+        for step in 0..1_000 {
+            let eye = at(-0.003 * step as f32, 0.2);
+            let height = 0.007 * step as f32;
+            let way = Vector3::new(corner[0], corner[1], height) - eye;
+            let seen = world.seen_from(eye);
+            assert!(seen.distance_m(way.normalize()).is_some());
+        }
+    }
+}

@@ -228,19 +228,19 @@ impl Tcm8230 {
         }
     }
 
-    /// A chip that a driver has brought up: clocked and out of reset since `now_ns`, gamma off,
-    /// manual exposure, 128 x 96 frames coming. For backends that have no I2C bus.
+    /// A chip that a driver has brought up: gamma off, manual exposure, the first 128 x 96 frame
+    /// (a black one) about to start at `now_ns`. For backends that have no I2C bus.
     #[must_use]
     pub fn streaming(now_ns: u64, extclk_hz: u32, lines: u16, gain: f32) -> Self {
         let mut chip = Self::default();
         chip.set_clock(now_ns, Some(extclk_hz));
-        chip.power = Power::Running(chip.clock.cycles(now_ns));
         for (address, value) in [(SYNC, 0x48), (GAMMA, 0x80), (OUTPUT, 0x20)] {
             chip.write_register(now_ns, address, value);
         }
         chip.write_exposure(now_ns, lines, gain);
         chip.engine.latched = chip.registers.latched();
         chip.engine.exposures = [chip.engine.latched.exposure(); 3];
+        chip.power = Power::Running(0);
         chip
     }
 
