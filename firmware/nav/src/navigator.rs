@@ -102,6 +102,11 @@ impl Navigator {
         &self.parameters
     }
 
+    /// Sets the way between two snapshots, metres; takes effect with the next recording.
+    pub const fn set_snapshot_spacing(&mut self, metres: f32) {
+        self.parameters.snapshot_spacing_m = metres;
+    }
+
     /// One step for each STATE message (10 Hz): the time (wrapping milliseconds), the autopilot's
     /// estimate, and the newest view, aligned by that estimate's heading; none where no frame came
     /// since the last step.

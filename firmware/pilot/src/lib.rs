@@ -2,8 +2,176 @@
 //!
 //! The board's tasks and the rig's native backend run this same room, so that a flight is the same
 //! flight on both, bit for bit. It has no clock and no peripherals: time comes as an argument.
+//!
+//! ```text
+//! frame   -> horizon -> exposure
+//!               |-----> spectrum ---.
+//! message -> command / pose --------+-> navigator -> outbox
+//! ```
 #![no_std]
 
-pub mod outbox;
+mod outbox;
+mod reply;
 
-pub use outbox::Outbox;
+use heapless::Vec;
+use link::{Message, State};
+use nalgebra::Point2;
+use nav::navigator::EVENTS_PER_STEP;
+use nav::panorama::FRAME_BYTES;
+use nav::{
+    CalibrationError, ExposureController, ExposureParameters, LensCalibration, Navigator,
+    PanoramaMap, Pose, Spectrum,
+};
+
+pub use nav::{Event, Exposure};
+pub use outbox::{Outbox, PERIOD_BYTES};
+
+/// One frame as the camera delivers it: 128 x 96 pixels, U Y V Y.
+pub type Frame = [u8; FRAME_BYTES];
+
+/// What happened in the answer to one message.
+pub type Events = Vec<Event, EVENTS_PER_STEP>;
+
+/// Every how many STATE messages the camera says its mode without being asked: once a second. It is
+/// the only way in which an autopilot recovers that believes in another mode.
+const MODE_PERIOD_STATES: u8 = 10;
+
+/// What the pilot is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameters {
+    /// The lens.
+    pub lens: LensCalibration,
+    /// The autoexposure.
+    pub exposure: ExposureParameters,
+    /// The navigator.
+    pub navigator: nav::Parameters,
+}
+
+impl Parameters {
+    /// The flight board: default lens, gamma off as the sensor driver sets it.
+    pub const DEFAULT: Self = Self {
+        lens: LensCalibration::DEFAULT,
+        exposure: ExposureParameters {
+            gamma: 1.0,
+            ..ExposureParameters::DEFAULT
+        },
+        navigator: nav::Parameters::DEFAULT,
+    };
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// What a frame told the pilot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameReport {
+    /// Mean luma of the horizon, 0..=255.
+    pub mean_luma: f32,
+    /// To be written to the sensor, if it is to change.
+    pub exposure: Option<Exposure>,
+}
+
+/// Eyes, memory and decisions.
+#[derive(Debug)]
+pub struct Pilot {
+    map: PanoramaMap,
+    exposure: ExposureController,
+    navigator: Navigator,
+    /// The newest view, aligned to north by the newest heading, until a STATE has used it: a camera
+    /// that fails must not leave the navigator with an old view.
+    view: Option<Spectrum>,
+    /// Radians, from the newest STATE.
+    heading: f32,
+    states_since_mode: u8,
+}
+
+impl Pilot {
+    /// A pilot on the ground: idle, with an empty route.
+    pub fn new(parameters: &Parameters) -> Result<Self, CalibrationError> {
+        Ok(Self {
+            map: PanoramaMap::new(&parameters.lens)?,
+            exposure: ExposureController::new(parameters.exposure),
+            navigator: Navigator::new(parameters.navigator),
+            view: None,
+            heading: 0.0,
+            states_since_mode: 0,
+        })
+    }
+
+    /// Looks at a frame. Once per frame; takes effect with the next STATE.
+    pub fn on_frame(&mut self, frame: &Frame) -> FrameReport {
+        let horizon = self.map.horizon(frame, self.heading);
+        let mean_luma = horizon.mean();
+        self.view = Some(Spectrum::of(&horizon));
+        FrameReport {
+            mean_luma,
+            exposure: self.exposure.update(mean_luma),
+        }
+    }
+
+    /// What the sensor should be set to.
+    pub fn exposure(&self) -> Exposure {
+        self.exposure.current()
+    }
+
+    /// The route and what is done with it.
+    pub fn navigator(&self) -> &Navigator {
+        &self.navigator
+    }
+
+    /// Hears a message; the answer goes to the outbox. `now_ms` may wrap.
+    ///
+    /// Nothing is said before the autopilot has spoken: what a Crazyflie on the ground receives
+    /// waits in its buffer and is taken for fresh at take-off.
+    ///
+    /// Returns what happened, in order, for the log.
+    pub fn on_message(&mut self, now_ms: u32, message: &Message, outbox: &mut Outbox) -> Events {
+        match message {
+            Message::Command(command) => self.on_command(command, outbox),
+            Message::State(state) => return self.on_state(now_ms, state, outbox),
+            // The camera's own messages, echoed or misrouted.
+            Message::Debug(_)
+            | Message::Vector(_)
+            | Message::Map(_)
+            | Message::InsCorrection(_)
+            | Message::Camera(_) => {}
+        }
+        Events::new()
+    }
+
+    /// Takes a command and says which mode holds now: the same byte if it was understood.
+    fn on_command(&mut self, command: &link::Command, outbox: &mut Outbox) {
+        if let Some(decimetres) = command.args.first().copied().filter(|spacing| *spacing > 0) {
+            self.navigator
+                .set_snapshot_spacing(f32::from(decimetres) / 10.0);
+        }
+        // An unknown byte changes nothing; the answer shows that.
+        let _ = self.navigator.command(command.command);
+        self.say_mode(outbox);
+    }
+
+    fn on_state(&mut self, now_ms: u32, state: &State, outbox: &mut Outbox) -> Events {
+        let Ok(pose) = state.pose() else {
+            return Events::from_iter([Event::InvalidPose]);
+        };
+        let pose = Pose::new(Point2::new(pose.x, pose.y), pose.yaw);
+        self.heading = pose.heading;
+        let step = self
+            .navigator
+            .step(now_ms, &pose, self.view.take().as_ref());
+        reply::push(&step, outbox);
+        self.states_since_mode += 1;
+        if self.states_since_mode >= MODE_PERIOD_STATES {
+            self.say_mode(outbox);
+        }
+        step.events
+    }
+
+    fn say_mode(&mut self, outbox: &mut Outbox) {
+        self.states_since_mode = 0;
+        reply::push_mode(self.navigator.mode_byte(), outbox);
+    }
+}
