@@ -53,6 +53,12 @@ impl PanoramicCamera {
         &self.world
     }
 
+    /// The last frame.
+    #[must_use]
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
     /// Sets the sensor's image tuning; the default is that of an initialised chip.
     pub fn set_tuning(&mut self, tuning: ImageTuning) {
         self.sensor.set_tuning(tuning);

@@ -7,9 +7,11 @@
 //! Not modelled: automatic exposure (ALCSW = 0 keeps the shutter and gain registers), long
 //! exposure modes, image sizes other than 128 x 96, test patterns, embedded synchronisation codes.
 
+mod engine;
 mod registers;
 mod timing;
 
+pub use engine::{Edge, ExposureLatency};
 pub use registers::{
     ANALOGUE_GAIN, BRIGHTNESS, CLOCK, CONTRAST, DIGITAL_GAIN, GAMMA, OUTPUT, RESET, SHUTTER_HIGH,
     SHUTTER_LOW, SYNC, code_of_gain, gain_of_code,
@@ -18,10 +20,10 @@ pub use timing::{
     exposure_line_ns, frame_active_ns, frame_period_ns, line_burst_ns, line_offset_ns, line_slot,
 };
 
-use super::HEIGHT;
-use super::sensor::{Exposure, ImageTuning};
-use registers::{Latched, RegisterFile};
-use timing::{ACTIVE_CYCLES, FRAME_CYCLES, cycles_to_ns, line_end_cycles, ns_to_cycles};
+use super::sensor::{Exposure, ImageTuning, MAX_EXPOSURE_LINES};
+use engine::Engine;
+use registers::RegisterFile;
+use timing::{cycles_to_ns, ns_to_cycles};
 
 /// The chip's 7-bit I2C address.
 pub const I2C_ADDRESS: u8 = 0x3c;
@@ -32,36 +34,6 @@ pub const STARTUP_CYCLES: u64 = 2_000;
 /// Slowest EXTCLK at which a chip has been seen to answer on I2C, in hertz. The data sheet asks
 /// for 11.9 MHz.
 pub const MIN_I2C_EXTCLK_HZ: u32 = 6_250_000;
-
-/// How many frame starts pass from a shutter or gain write until a frame is exposed with it.
-///
-/// The registers are taken over at vertical sync, but a rolling shutter integrates frame n+1 while
-/// frame n is read out, so the full effect shows on the second frame. The data sheet is silent;
-/// the other values serve tests of an exposure controller's robustness.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ExposureLatency {
-    /// The frame that starts at the latching sync.
-    One,
-    /// The frame after that.
-    #[default]
-    Two,
-    /// The third.
-    Three,
-}
-
-/// A change on the video port.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Edge {
-    /// VD rises. Frames are numbered from 0 in the order they are put out, across resets.
-    FrameStart {
-        /// The number of the frame that starts.
-        number: u32,
-    },
-    /// The last byte of image line 0..96 has been clocked out.
-    Line(usize),
-    /// VD falls.
-    FrameEnd,
-}
 
 /// The image sensor: registers, bus and frame engine.
 #[derive(Clone, Debug)]
@@ -96,12 +68,12 @@ impl Clock {
 /// The reset pin's history, in EXTCLK cycles.
 #[derive(Clone, Copy, Debug)]
 enum Power {
-    /// Held in reset since.
-    Held(u64),
+    /// Held in reset.
+    Held { since: u64 },
     /// Released too early: the chip hangs until the next reset.
     Hung,
-    /// Running since.
-    Running(u64),
+    /// Out of reset.
+    Running { since: u64 },
 }
 
 /// The I2C slave between start and stop.
@@ -111,100 +83,6 @@ struct Bus {
     /// The next byte written is a register address.
     awaits_pointer: bool,
     pointer: u8,
-}
-
-/// Where the frame engine stands.
-#[derive(Clone, Debug)]
-struct Engine {
-    /// EXTCLK cycle at which the current frame started, or the next will (`Step::Start`).
-    frame_start: u64,
-    step: Step,
-    latched: Latched,
-    /// Exposures latched at the last frame starts, newest first.
-    exposures: [Exposure; 3],
-    latency: ExposureLatency,
-    /// Frames have been coming out without a break.
-    streaming: bool,
-    next_number: u32,
-    black_frames_left: u8,
-    black: bool,
-}
-
-/// The engine's next edge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Step {
-    Start,
-    Line(usize),
-    End,
-}
-
-impl Engine {
-    fn new(latched: Latched, latency: ExposureLatency) -> Self {
-        Self {
-            frame_start: 0,
-            step: Step::Start,
-            latched,
-            exposures: [latched.exposure(); 3],
-            latency,
-            streaming: false,
-            next_number: 0,
-            black_frames_left: 0,
-            black: false,
-        }
-    }
-
-    /// The engine after a reset: registers and phase are new, the count of frames goes on.
-    fn restarted(&self, latched: Latched, frame_start: u64) -> Self {
-        Self {
-            frame_start,
-            next_number: self.next_number,
-            ..Self::new(latched, self.latency)
-        }
-    }
-
-    /// FPS = 1 halves the pixel clock: everything takes twice as many EXTCLK cycles.
-    fn scale(&self) -> u64 {
-        1 + u64::from(self.latched.half_rate)
-    }
-
-    fn next_cycle(&self) -> u64 {
-        let offset = match self.step {
-            Step::Start => 0,
-            Step::Line(line) => line_end_cycles(line),
-            Step::End => ACTIVE_CYCLES,
-        };
-        self.frame_start + offset * self.scale()
-    }
-
-    fn skip_to_next_frame(&mut self) {
-        self.frame_start += FRAME_CYCLES * self.scale();
-        self.step = Step::Start;
-    }
-
-    /// Vertical sync: the registers take effect.
-    fn latch(&mut self, registers: &RegisterFile) {
-        let next = registers.latched();
-        if self.latched.changes_mode(next) {
-            self.black_frames_left = registers.masked_frames();
-        }
-        self.latched = next;
-        self.exposures.rotate_right(1);
-        self.exposures[0] = next.exposure();
-    }
-
-    fn start_frame(&mut self, registers: &RegisterFile) -> Edge {
-        self.latch(registers);
-        if !self.streaming {
-            self.streaming = true;
-            self.black_frames_left = registers.masked_frames();
-        }
-        self.black = self.black_frames_left > 0;
-        self.black_frames_left = self.black_frames_left.saturating_sub(1);
-        let number = self.next_number;
-        self.next_number = number.wrapping_add(1);
-        self.step = Step::Line(0);
-        Edge::FrameStart { number }
-    }
 }
 
 impl Default for Tcm8230 {
@@ -222,7 +100,7 @@ impl Tcm8230 {
         Self {
             registers,
             clock: Clock::default(),
-            power: Power::Held(0),
+            power: Power::Held { since: 0 },
             bus: Bus::default(),
             engine,
         }
@@ -238,9 +116,8 @@ impl Tcm8230 {
             chip.write_register(now_ns, address, value);
         }
         chip.write_exposure(now_ns, lines, gain);
-        chip.engine.latched = chip.registers.latched();
-        chip.engine.exposures = [chip.engine.latched.exposure(); 3];
-        chip.power = Power::Running(0);
+        chip.engine = Engine::new(chip.registers.latched(), ExposureLatency::default());
+        chip.power = Power::Running { since: 0 };
         chip
     }
 
@@ -259,16 +136,16 @@ impl Tcm8230 {
         self.advance(now_ns);
         let cycle = self.clock.cycles(now_ns);
         self.power = match (self.power, high) {
-            (Power::Held(since), true) if cycle - since < RESET_CYCLES => Power::Hung,
-            (Power::Held(_), true) => Power::Running(cycle),
-            (Power::Hung | Power::Running(_), false) => Power::Held(cycle),
-            (unchanged, _) => unchanged,
+            (Power::Held { since }, true) if cycle.saturating_sub(since) < RESET_CYCLES => {
+                Power::Hung
+            }
+            (Power::Held { .. }, true) => Power::Running { since: cycle },
+            (Power::Hung | Power::Running { .. }, false) => Power::Held { since: cycle },
+            (Power::Held { .. }, false) | (Power::Hung | Power::Running { .. }, true) => return,
         };
         self.bus = Bus::default();
-        if let Power::Held(_) | Power::Running(_) = self.power {
-            self.registers = RegisterFile::default();
-            self.engine = self.engine.restarted(self.registers.latched(), cycle);
-        }
+        self.registers = RegisterFile::default();
+        self.engine = self.engine.restarted(self.registers.latched(), cycle);
     }
 
     /// A start or repeated start with an address. True: acknowledged.
@@ -314,10 +191,7 @@ impl Tcm8230 {
         self.advance(now_ns);
         self.registers.write(address, value);
         if !self.registers.output_enabled() {
-            self.engine.streaming = false;
-            if self.engine.step != Step::Start {
-                self.engine.skip_to_next_frame();
-            }
+            self.engine.break_off();
         }
     }
 
@@ -325,9 +199,7 @@ impl Tcm8230 {
     /// latched at the next frame start. `lines` is cut to 1..=525, `gain` to the steps of 192/AG.
     pub fn write_exposure(&mut self, now_ns: u64, lines: u16, gain: f32) {
         const MANUAL: u8 = 0x80;
-        let [high, low] = lines
-            .clamp(1, super::sensor::MAX_EXPOSURE_LINES)
-            .to_be_bytes();
+        let [high, low] = lines.clamp(1, MAX_EXPOSURE_LINES).to_be_bytes();
         self.write_register(now_ns, SHUTTER_HIGH, MANUAL | high);
         self.write_register(now_ns, SHUTTER_LOW, low);
         self.write_register(now_ns, ANALOGUE_GAIN, code_of_gain(gain));
@@ -337,8 +209,8 @@ impl Tcm8230 {
     /// that takes `now_ns`.
     #[must_use]
     pub fn next_edge(&self) -> Option<u64> {
-        let running = matches!(self.power, Power::Running(_));
-        if !running || (self.engine.step == Step::Start && !self.draws_next_frame()) {
+        let running = matches!(self.power, Power::Running { .. });
+        if !running || (self.engine.between_frames() && !self.draws_next_frame()) {
             return None;
         }
         self.clock.time_ns(self.engine.next_cycle())
@@ -348,32 +220,17 @@ impl Tcm8230 {
     /// is due.
     pub fn take_edge(&mut self, now_ns: u64) -> Option<Edge> {
         self.next_edge().filter(|&due_ns| due_ns <= now_ns)?;
-        let edge = match self.engine.step {
-            Step::Start => {
-                let edge = self.engine.start_frame(&self.registers);
-                self.registers.report_shutter(self.exposure().lines);
-                edge
-            }
-            Step::Line(line) => {
-                self.engine.step = if line + 1 < HEIGHT {
-                    Step::Line(line + 1)
-                } else {
-                    Step::End
-                };
-                Edge::Line(line)
-            }
-            Step::End => {
-                self.engine.skip_to_next_frame();
-                Edge::FrameEnd
-            }
-        };
+        let edge = self.engine.step(&self.registers);
+        if let Edge::FrameStart { .. } = edge {
+            self.registers.report_shutter(self.exposure().lines);
+        }
         Some(edge)
     }
 
     /// The exposure of the current frame.
     #[must_use]
     pub fn exposure(&self) -> Exposure {
-        self.engine.exposures[self.engine.latency as usize]
+        self.engine.exposure()
     }
 
     /// The image tuning registers, which take effect at once.
@@ -386,22 +243,20 @@ impl Tcm8230 {
     /// the mode was changed (D_MASK).
     #[must_use]
     pub fn black(&self) -> bool {
-        self.engine.black
+        self.engine.black()
     }
 
     /// Passes the frame starts up to `now_ns` that nobody sees.
     fn advance(&mut self, now_ns: u64) {
-        if !matches!(self.power, Power::Running(_)) {
+        if !matches!(self.power, Power::Running { .. }) {
             return;
         }
         let now = self.clock.cycles(now_ns);
-        while self.engine.step == Step::Start
+        while self.engine.between_frames()
             && !self.draws_next_frame()
-            && self.engine.frame_start <= now
+            && self.engine.next_cycle() <= now
         {
-            self.engine.latch(&self.registers);
-            self.engine.streaming = false;
-            self.engine.skip_to_next_frame();
+            self.engine.skip_frame(&self.registers);
         }
     }
 
@@ -411,8 +266,8 @@ impl Tcm8230 {
 
     fn answers(&self, now_ns: u64) -> bool {
         let clocked = self.clock.hz.is_some_and(|hz| hz >= MIN_I2C_EXTCLK_HZ);
-        let started = |since| self.clock.cycles(now_ns) - since >= STARTUP_CYCLES;
-        clocked && matches!(self.power, Power::Running(since) if started(since))
+        let started = |since| self.clock.cycles(now_ns).saturating_sub(since) >= STARTUP_CYCLES;
+        clocked && matches!(self.power, Power::Running { since } if started(since))
     }
 }
 

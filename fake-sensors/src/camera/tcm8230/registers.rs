@@ -58,12 +58,15 @@ pub fn gain_of_code(code: u8) -> f32 {
     f32::from(UNITY_GAIN_CODE) / f32::from(code.clamp(MAX_GAIN_CODE, UNITY_GAIN_CODE))
 }
 
-/// Nearest register code of an analogue gain, within x1..x16.
+/// Nearest register code of an analogue gain, within x1..x16; x1 for what is no number.
 #[must_use]
 pub fn code_of_gain(gain: f32) -> u8 {
-    // The cast saturates, and turns NaN into 0, which the clamp makes the highest gain.
-    let code = (f32::from(UNITY_GAIN_CODE) / gain + 0.5) as u8;
-    code.clamp(MAX_GAIN_CODE, UNITY_GAIN_CODE)
+    if gain > 1.0 {
+        let code = f32::from(UNITY_GAIN_CODE) / gain + 0.5;
+        (code as u8).max(MAX_GAIN_CODE)
+    } else {
+        UNITY_GAIN_CODE
+    }
 }
 
 /// 256 bytes as the I2C bus sees them.

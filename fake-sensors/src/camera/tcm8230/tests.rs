@@ -1,3 +1,4 @@
+use super::super::HEIGHT;
 use super::*;
 
 const EXTCLK_HZ: u32 = 21_000_000;
@@ -142,7 +143,7 @@ fn frames_keep_their_grid_for_hours() {
     let mut chip = Tcm8230::streaming(0, EXTCLK_HZ, 100, 1.0);
     for number in 0..100_000_u64 {
         assert_eq!(next_frame(&mut chip), (number * FRAME_NS, number as u32));
-        chip.engine.skip_to_next_frame();
+        chip.engine.break_off();
     }
 }
 
@@ -273,6 +274,16 @@ fn gain_codes_are_those_of_the_data_sheet() {
         assert_eq!(gain_of_code(code), gain);
         assert_eq!(code_of_gain(gain), code);
     }
-    assert_eq!(code_of_gain(0.0), 0xc0.min(code_of_gain(0.5)));
+    assert_eq!(code_of_gain(0.5), 0xc0);
+    assert_eq!(code_of_gain(f32::NAN), 0xc0);
     assert_eq!(code_of_gain(100.0), 0x0c);
+}
+
+#[test]
+fn a_reset_line_that_stays_high_changes_nothing() {
+    let mut chip = enabled(ExposureLatency::default());
+    next_frame(&mut chip);
+    let due_ns = chip.next_edge();
+    chip.set_reset(FIRST_NS + 10_000, true);
+    assert_eq!(chip.next_edge(), due_ns);
 }
