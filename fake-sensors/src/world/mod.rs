@@ -5,6 +5,7 @@
 
 mod arena;
 mod canvas;
+mod scenery;
 mod surface;
 mod texture;
 
