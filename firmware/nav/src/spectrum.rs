@@ -44,6 +44,13 @@ impl Spectrum {
         &self.coefficients
     }
 
+    /// Whether no coefficient is NaN or infinite.
+    pub fn is_finite(&self) -> bool {
+        self.coefficients
+            .iter()
+            .all(|c| c.re.is_finite() && c.im.is_finite())
+    }
+
     /// What a viewer at the same place sees who is turned counter-clockwise by `angle` (radians).
     pub fn rotated(&self, angle: f32) -> Self {
         let mut coefficients = self.coefficients;
@@ -60,7 +67,7 @@ impl Spectrum {
 }
 
 /// Turns the viewer of c_1, c_2, ... counter-clockwise by `angle`: c_k e^{ik angle}.
-pub(crate) fn rotate(coefficients: &mut [Complex<f32>], angle: f32) {
+pub fn rotate(coefficients: &mut [Complex<f32>], angle: f32) {
     // One sine and one cosine; the powers follow by multiplication.
     let step = Complex::new(libm::cosf(angle), libm::sinf(angle));
     let mut turn = step;

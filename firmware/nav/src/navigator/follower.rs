@@ -2,7 +2,7 @@
 
 use nalgebra::Point2;
 
-use super::homing_run::HomingRun;
+use super::homing_run::{Ending, HomingRun};
 use super::map_entry;
 use super::parameters::{Parameters, has_passed};
 use super::realignment::Realigner;
@@ -85,7 +85,9 @@ impl Follower {
             step.report(Event::RouteEmpty);
             self.phase = Phase::Holding { at: here };
         } else if self.stays {
-            self.start_homing(false, context, step);
+            // It may be far away, and the camera leads; odometry is what is left in the dark.
+            let fallback = recorded_position(context.route).unwrap_or(here);
+            self.start_homing(here, fallback, context, step);
         } else {
             self.start_next(here, context, step);
         }
@@ -94,7 +96,8 @@ impl Follower {
     /// What comes after a snapshot is done with; the drone rests `at`.
     fn go_on(&mut self, at: Point2<f32>, context: &mut Context, step: &mut Step) {
         if self.stays {
-            self.start_homing(true, context, step);
+            let run = HomingRun::new(context.now_ms, at, at);
+            self.phase = Phase::Homing { run, done: true };
         } else if context.route.is_empty() {
             self.finish(at, step);
         } else {
@@ -104,9 +107,8 @@ impl Follower {
 
     /// On to the next snapshot: by sight where no odometry leads there, else by odometry.
     fn start_next(&mut self, at: Point2<f32>, context: &mut Context, step: &mut Step) {
-        let by_sight = context.route.has_snapshot_at_tip() && context.route.top_is_visual_only();
-        if by_sight {
-            self.start_homing_from(at, false, context, step);
+        if context.route.has_snapshot_at_tip() && context.route.top_is_visual_only() {
+            self.start_homing(at, at, context, step);
         } else {
             self.start_leg(context, step);
         }
@@ -131,7 +133,7 @@ impl Follower {
                 break;
             }
             if context.route.has_snapshot_at_tip() {
-                return self.start_homing(false, context, step);
+                return self.start_homing(tip, tip, context, step);
             }
             if context.route.pop_vector().is_none() {
                 return self.finish(tip, step);
@@ -143,35 +145,23 @@ impl Follower {
         }
     }
 
-    /// Homing at the last snapshot; without a view towards where the vectors believe it, or towards
-    /// here where they do not know.
-    fn start_homing(&mut self, done: bool, context: &mut Context, step: &mut Step) {
-        let here = context.pose.position;
-        self.start_homing_from(here, done, context, step);
-    }
-
-    fn start_homing_from(
+    /// Homing at the last snapshot, with the set-point at first at `target`, and at `fallback` while
+    /// there is no vector.
+    fn start_homing(
         &mut self,
-        at: Point2<f32>,
-        done: bool,
+        target: Point2<f32>,
+        fallback: Point2<f32>,
         context: &mut Context,
         step: &mut Step,
     ) {
-        let known = context.route.top_position_is_known();
-        let position = context.route.top_snapshot_position();
-        let fallback = position.filter(|_| known).unwrap_or(at);
-        self.phase = Phase::Homing {
-            run: HomingRun::new(context.now_ms, fallback),
-            done,
-        };
-        if !done {
-            let snapshot = context.route.top_snapshot().map(|top| top.snapshot);
-            let entry = map_entry(context.route, snapshot);
-            step.report(Event::HomingStarted {
-                index: entry.snapshot_index,
-            });
-            step.map = Some(entry);
-        }
+        let run = HomingRun::new(context.now_ms, target, fallback);
+        self.phase = Phase::Homing { run, done: false };
+        let snapshot = context.route.top_snapshot().map(|top| top.snapshot);
+        let entry = map_entry(context.route, snapshot);
+        step.report(Event::HomingStarted {
+            index: entry.snapshot_index,
+        });
+        step.map = Some(entry);
     }
 
     fn finish(&mut self, at: Point2<f32>, step: &mut Step) {
@@ -210,21 +200,14 @@ impl Follower {
         if *done {
             return set_point;
         }
-        let is_last = context.route.snapshots().len() == 1;
-        let limit_ms = if is_last && !self.stays {
-            context.parameters.final_homing_time_ms
-        } else {
-            context.parameters.homing_time_ms
-        };
-        let Some(by) = run.arrival(context.parameters, context.now_ms, limit_ms) else {
+        let ending = ending(self.stays, context);
+        let Some(by) = run.arrival(context.parameters, context.now_ms, &ending) else {
             return set_point;
         };
-        let may_realign = context
+        if !context
             .realigner
-            .is_ready(context.parameters, context.now_ms);
-        // Staying is not in a hurry: it may have begun far away, and ends only where it is near.
-        let far = run.offset_m() > context.parameters.homing_step_m;
-        if !may_realign || (self.stays && far) {
+            .is_ready(context.parameters, context.now_ms)
+        {
             return set_point;
         }
         let run = run.clone();
@@ -240,10 +223,7 @@ impl Follower {
         context: &mut Context,
         step: &mut Step,
     ) -> SetPoint {
-        let recorded = context
-            .route
-            .top_snapshot_position()
-            .filter(|_| context.route.top_position_is_known());
+        let recorded = recorded_position(context.route);
         if !self.stays {
             context.route.pop_snapshot();
         }
@@ -271,6 +251,36 @@ impl Follower {
             }
         }
     }
+}
+
+/// When homing at the last snapshot may end.
+fn ending(stays: bool, context: &Context) -> Ending {
+    let parameters = context.parameters;
+    if stays {
+        // It may have begun far away: it takes as long as it takes.
+        Ending {
+            time_limit_ms: None,
+            may_be_early: true,
+        }
+    } else if context.route.snapshots().len() == 1 {
+        // At home precision matters and nothing follows: the drone takes all its time.
+        Ending {
+            time_limit_ms: Some(parameters.final_homing_time_ms),
+            may_be_early: false,
+        }
+    } else {
+        Ending {
+            time_limit_ms: Some(parameters.homing_time_ms),
+            may_be_early: true,
+        }
+    }
+}
+
+/// Where the last snapshot was taken, as far as the vectors tell.
+fn recorded_position(route: &Route) -> Option<Point2<f32>> {
+    route
+        .top_snapshot_position()
+        .filter(|_| route.top_position_is_known())
 }
 
 fn by_odometry(target: Point2<f32>, pose: &Pose) -> SetPoint {

@@ -9,11 +9,14 @@ use crate::pose::Pose;
 use crate::snapshot::Snapshot;
 use crate::spectrum::Spectrum;
 
+/// Steps without a view, half a second, after which the camera counts as silent.
+const CAMERA_IS_SILENT: u8 = 5;
+
 /// The state of homing at one snapshot.
 #[derive(Clone, Debug)]
 pub(super) struct HomingRun {
     started_ms: u32,
-    /// Where odometry believes the snapshot: the target while there is no vector.
+    /// The target while there is no vector.
     fallback: Point2<f32>,
     /// The low-passed set-point.
     target: Point2<f32>,
@@ -21,8 +24,10 @@ pub(super) struct HomingRun {
     filtered: Option<Filtered>,
     /// Vectors so far.
     vectors: u16,
-    /// Why the newest view gave none.
+    /// Why there is none now.
     failure: Option<NoVectorReason>,
+    /// Steps without a view since the last one.
+    missing_views: u8,
     least_difference: f32,
     frames_since_least: u16,
 }
@@ -33,15 +38,26 @@ struct Filtered {
     rotation: f32,
 }
 
+/// When homing may end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ending {
+    /// At the latest; none for as long as it takes.
+    pub(super) time_limit_ms: Option<u32>,
+    /// Whether it may end as soon as the views say so.
+    pub(super) may_be_early: bool,
+}
+
 impl HomingRun {
-    pub(super) const fn new(now_ms: u32, fallback: Point2<f32>) -> Self {
+    /// Homing that begins with the set-point at `target`.
+    pub(super) const fn new(now_ms: u32, target: Point2<f32>, fallback: Point2<f32>) -> Self {
         Self {
             started_ms: now_ms,
             fallback,
-            target: fallback,
+            target,
             filtered: None,
             vectors: 0,
             failure: None,
+            missing_views: 0,
             least_difference: f32::INFINITY,
             frames_since_least: 0,
         }
@@ -56,23 +72,19 @@ impl HomingRun {
         view: Option<&Spectrum>,
         step: &mut Step,
     ) -> SetPoint {
-        let homing = view
-            .ok_or(NoVectorReason::NoView)
-            .and_then(|view| homing::home(view, snapshot, &parameters.homing));
-        match homing {
-            Ok(vector) => {
+        self.missing_views = match view {
+            Some(_) => 0,
+            None => self.missing_views.saturating_add(1),
+        };
+        match view.map(|view| homing::home(view, snapshot, &parameters.homing)) {
+            Some(Ok(vector)) => {
                 self.failure = None;
                 self.follow(parameters, pose, &vector);
             }
-            Err(reason) => {
-                if self.failure.replace(reason) != Some(reason) {
-                    step.report(Event::NoVector { reason });
-                }
-                // A frame that is merely late leaves the target; a blind view falls back, softly.
-                if reason != NoVectorReason::NoView {
-                    self.target += (self.fallback - self.target) * parameters.smoothing;
-                }
-            }
+            Some(Err(reason)) => self.fall_back(parameters, reason, step),
+            // Frames and steps are not in phase: a single step without a view means nothing.
+            None if self.missing_views < CAMERA_IS_SILENT => {}
+            None => self.fall_back(parameters, NoVectorReason::NoView, step),
         }
         SetPoint {
             source: if self.failure.is_none() {
@@ -84,6 +96,14 @@ impl HomingRun {
             start: pose.position,
             delta_yaw: self.filtered.map_or(0.0, |filtered| filtered.rotation),
         }
+    }
+
+    /// Goes towards the fallback, softly, because a single bad view shall not make the drone jump.
+    fn fall_back(&mut self, parameters: &Parameters, reason: NoVectorReason, step: &mut Step) {
+        if self.failure.replace(reason) != Some(reason) {
+            step.report(Event::NoVector { reason });
+        }
+        self.target += (self.fallback - self.target) * parameters.smoothing;
     }
 
     fn follow(&mut self, parameters: &Parameters, pose: &Pose, vector: &HomingVector) {
@@ -109,17 +129,18 @@ impl HomingRun {
         }
     }
 
-    /// Whether, and how, the drone has arrived after `limit_ms`.
+    /// Whether, and how, homing has ended.
     pub(super) fn arrival(
         &self,
         parameters: &Parameters,
         now_ms: u32,
-        limit_ms: u32,
+        ending: &Ending,
     ) -> Option<Arrival> {
-        if has_passed(self.started_ms, now_ms, limit_ms) {
+        let is_over = |limit_ms| has_passed(self.started_ms, now_ms, limit_ms);
+        if ending.time_limit_ms.is_some_and(is_over) {
             return Some(Arrival::TimeOut);
         }
-        if !self.is_trustworthy(parameters) {
+        if !(ending.may_be_early && self.is_trustworthy(parameters)) {
             return None;
         }
         if self.offset_m() < parameters.arrival_radius_m {
@@ -136,7 +157,7 @@ impl HomingRun {
     }
 
     /// How far away the snapshot looks, metres.
-    pub(super) fn offset_m(&self) -> f32 {
+    fn offset_m(&self) -> f32 {
         self.filtered
             .map_or(f32::INFINITY, |filtered| filtered.offset_m.norm())
     }

@@ -23,7 +23,7 @@ pub struct Parameters {
     pub smoothing: f32,
     /// Time at a snapshot.
     pub homing_time_ms: u32,
-    /// Time at the last snapshot, which is home.
+    /// Time at the last snapshot, which is home; homing does not end earlier there.
     pub final_homing_time_ms: u32,
     /// Homing ends early when the low-passed vector is shorter than this; zero never ends it early.
     pub arrival_radius_m: f32,

@@ -69,10 +69,10 @@ impl Recorder {
             step.map = Some(super::map_entry(route, None));
         }
         self.measure(parameters, position);
-        if let (true, Some(view)) = (self.snapshot_due, view) {
-            self.take_snapshot(route, position, view, step)?;
+        match view.filter(|view| self.snapshot_due && view.is_finite()) {
+            Some(view) => self.take_snapshot(route, position, view, step),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// Measures the way since the last snapshot, and decides whether the next is due.

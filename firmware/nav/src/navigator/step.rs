@@ -24,7 +24,7 @@ pub struct Step {
 
 impl Step {
     pub(super) fn report(&mut self, event: Event) {
-        // A step has at most one event of each kind, and fewer than fit.
+        // No step has more than five: a leg begins, is over at once, and homing begins without a view.
         let _ = self.events.push(event);
     }
 }
