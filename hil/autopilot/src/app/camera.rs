@@ -1,0 +1,179 @@
+//! The camera as the app sees it: what is sent to it, and what its messages do.
+
+use link::{Message, Mode, NotFinite, State, WorldPoint, WorldPose};
+use nalgebra::Vector3;
+
+use super::correction::Corrections;
+use super::goal::Goal;
+use super::handshake::Handshake;
+use super::settings::CorrectionSd;
+use super::uart::Uart;
+use crate::ekf::Measurement;
+
+/// A message the app has taken from its UART.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Received {
+    /// When it was handled, ms; it may have waited in the buffer since the last cycle.
+    pub at_ms: u64,
+    /// What it says.
+    pub message: Message,
+}
+
+/// How often each thing happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counters {
+    /// STATE messages sent: runs of the 10 Hz loop.
+    pub states_sent: u32,
+    /// COMMAND messages sent, repeats included.
+    pub commands_sent: u32,
+    /// Corrections put into the filter's queue.
+    pub corrections_applied: u32,
+    /// Corrections whose index was that of the one before.
+    pub corrections_ignored: u32,
+    /// Bytes that the full UART buffer lost.
+    pub overflowed_bytes: u64,
+    /// Messages beyond the nine that a cycle can use.
+    pub unused_messages: u32,
+    /// What the parser has seen.
+    pub link: link::Counters,
+}
+
+/// What a receive call brought for the filter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Realignment {
+    /// Index of the correction.
+    pub index: u16,
+    /// What to put into the filter's queue.
+    pub measurements: [Measurement; 2],
+}
+
+/// Both directions of the link, and the state that its messages have.
+#[derive(Debug)]
+pub struct Camera {
+    uart: Uart,
+    handshake: Handshake,
+    goal: Goal,
+    corrections: Corrections,
+    received: Vec<Received>,
+    states_sent: u32,
+    commands_sent: u32,
+}
+
+impl Camera {
+    /// A camera that has not been heard of.
+    pub fn new(correction_sd: CorrectionSd) -> Self {
+        Self {
+            uart: Uart::new(),
+            handshake: Handshake::default(),
+            goal: Goal::default(),
+            corrections: Corrections::new(correction_sd),
+            received: Vec::new(),
+            states_sent: 0,
+            commands_sent: 0,
+        }
+    }
+
+    /// Bytes arrive, whether the app reads or not.
+    pub fn arrive(&mut self, bytes: &[u8]) {
+        self.uart.arrive(bytes);
+    }
+
+    /// Wants `mode`; whether the camera was in it at the last cycle.
+    pub fn command(&mut self, mode: Mode, args: &[u8]) -> bool {
+        self.handshake.want(mode, args);
+        self.handshake.synced()
+    }
+
+    /// Wants `mode`, a following one; a new target to fly to, once both sides agree on the mode.
+    ///
+    /// A vector that arrives in one cycle is flown from the next one on.
+    pub fn follow(&mut self, mode: Mode) -> Option<WorldPoint> {
+        self.handshake.want(mode, &[]);
+        if self.handshake.settled() {
+            self.goal.issue()
+        } else {
+            None
+        }
+    }
+
+    /// The bytes a cycle sends: STATE, and COMMAND as long as its echo is missing. Begins to read.
+    pub fn report(&mut self, pose: WorldPose) -> Vec<u8> {
+        let mut bytes = Message::State(State::from_world(pose)).encode().to_vec();
+        self.states_sent += 1;
+        if let Some(command) = self.handshake.cycle() {
+            bytes.extend(Message::Command(command).encode());
+            self.commands_sent += 1;
+        }
+        self.uart.open_window();
+        bytes
+    }
+
+    /// Whether the app is reading.
+    pub fn listening(&self) -> bool {
+        self.uart.window_is_open()
+    }
+
+    /// Stops reading.
+    pub fn stop_listening(&mut self) {
+        self.uart.close_window();
+    }
+
+    /// One receive call; does nothing unless the app is reading.
+    ///
+    /// # Errors
+    /// [`NotFinite`] if a target or a correction is no number.
+    pub fn listen(
+        &mut self,
+        now_ms: u64,
+        estimate_m: Vector3<f32>,
+    ) -> Result<Option<Realignment>, NotFinite> {
+        let Some(message) = self.uart.receive() else {
+            return Ok(None);
+        };
+        let handled = self.handle(&message, estimate_m);
+        self.received.push(Received {
+            at_ms: now_ms,
+            message,
+        });
+        handled
+    }
+
+    /// The messages handled since the last call, in order.
+    pub fn take_received(&mut self) -> Vec<Received> {
+        std::mem::take(&mut self.received)
+    }
+
+    /// How often each thing happened.
+    pub fn counters(&self) -> Counters {
+        Counters {
+            states_sent: self.states_sent,
+            commands_sent: self.commands_sent,
+            corrections_applied: self.corrections.applied(),
+            corrections_ignored: self.corrections.ignored(),
+            overflowed_bytes: self.uart.overflowed_bytes(),
+            unused_messages: self.uart.unused_messages(),
+            link: self.uart.counters(),
+        }
+    }
+
+    fn handle(
+        &mut self,
+        message: &Message,
+        estimate_m: Vector3<f32>,
+    ) -> Result<Option<Realignment>, NotFinite> {
+        match message {
+            Message::Command(command) => self.handshake.receive(command.command),
+            Message::Vector(vector) => self.goal.receive(vector.target()?),
+            Message::InsCorrection(correction) => {
+                let measurements = self.corrections.apply(correction, estimate_m)?;
+                return Ok(measurements.map(|measurements| Realignment {
+                    index: correction.snapshot_index,
+                    measurements,
+                }));
+            }
+            // Only logged, or the app's own.
+            Message::Map(_) | Message::Camera(_) | Message::State(_) | Message::Debug(_) => {}
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,316 @@
+//! The app itself: from the ground to the ground, one millisecond at a time.
+
+use link::{NotFinite, WorldPoint, WorldPose};
+use nalgebra::Vector3;
+
+use super::camera::{Camera, Counters, Received};
+use super::mission::{Decision, Mission, View};
+use super::phase::{Outcome, Phase};
+use super::script::Script;
+use super::settings::{CYCLE_MS, FLIGHT_HEIGHT_M, Settings};
+use super::vertical;
+use crate::ekf::{Estimate, Measurement};
+
+/// Where the position controller is to hold the drone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SetPoint {
+    /// Position in the world, m.
+    pub position_m: Vector3<f32>,
+    /// Heading, rad, counter-clockwise. The app holds that of the take-off.
+    pub yaw_rad: f32,
+}
+
+/// What one millisecond asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Output {
+    /// Bytes to send to the camera.
+    pub transmit: Vec<u8>,
+    /// Where to be.
+    pub set_point: SetPoint,
+    /// Whether the motors may turn.
+    pub motors: bool,
+    /// Whether the filter is to start afresh.
+    pub reset_filter: bool,
+    /// What to put into the filter's queue, in this order.
+    pub measurements: Vec<Measurement>,
+}
+
+/// What the app is doing, with what it needs for that.
+#[derive(Debug, Clone, Copy)]
+enum Stage {
+    Ground,
+    /// From the filter's reset at `since_ms` to the hover; the climb starts at `from`.
+    TakeOff {
+        since_ms: u64,
+        from: Option<WorldPose>,
+    },
+    Airborne {
+        since_ms: u64,
+    },
+    Landing {
+        since_ms: u64,
+        height_m: f32,
+        outcome: Outcome,
+    },
+    Landed(Outcome),
+}
+
+/// The app on board, with its script.
+#[derive(Debug)]
+pub struct FlightApp {
+    settings: Settings,
+    mission: Mission,
+    camera: Camera,
+    stage: Stage,
+    /// Time of the first tick, ms.
+    started_ms: Option<u64>,
+    set_point: SetPoint,
+    /// Decided in a cycle, issued at the end of its receive window.
+    next_target: Option<WorldPoint>,
+    /// What the operator has asked for from outside the script.
+    ordered: Option<Outcome>,
+}
+
+impl FlightApp {
+    /// An app on the ground that will fly `script`.
+    pub fn new(script: Script, settings: Settings) -> Self {
+        Self {
+            settings,
+            mission: Mission::new(script, settings),
+            camera: Camera::new(settings.correction),
+            stage: Stage::Ground,
+            started_ms: None,
+            set_point: SetPoint {
+                position_m: Vector3::zeros(),
+                yaw_rad: 0.0,
+            },
+            next_target: None,
+            ordered: None,
+        }
+    }
+
+    /// One millisecond: `estimate` is the filter's newest, `received` what arrived from the camera
+    /// since the last call. To be called once for each `now_ms`, in order.
+    pub fn tick(&mut self, now_ms: u64, estimate: &Estimate, received: &[u8]) -> Output {
+        self.camera.arrive(received);
+        let mut output = Output {
+            transmit: Vec::new(),
+            set_point: self.set_point,
+            motors: true,
+            reset_filter: false,
+            measurements: Vec::new(),
+        };
+        self.obey(now_ms, estimate);
+        match self.stage {
+            Stage::Ground => self.stand(now_ms, &mut output),
+            Stage::TakeOff { since_ms, from } => self.take_off(now_ms, since_ms, from, estimate),
+            Stage::Airborne { since_ms } => self.fly(now_ms, since_ms, estimate, &mut output),
+            Stage::Landing {
+                since_ms,
+                height_m,
+                outcome,
+            } => self.land(now_ms - since_ms, height_m, outcome),
+            Stage::Landed(_) => {}
+        }
+        output.set_point = self.set_point;
+        output.motors = self.motors();
+        output
+    }
+
+    /// What the app is doing.
+    pub fn phase(&self) -> Phase {
+        match self.stage {
+            Stage::Ground => Phase::Ground,
+            Stage::TakeOff { .. } => Phase::TakeOff,
+            Stage::Airborne { .. } => self.mission.phase(),
+            Stage::Landing { .. } => Phase::Landing,
+            Stage::Landed(outcome) => Phase::Landed(outcome),
+        }
+    }
+
+    /// The operator's red button: the motors stop with the next tick and never start again.
+    pub fn kill(&mut self) {
+        self.ordered = Some(Outcome::Killed);
+    }
+
+    /// The operator's land button.
+    pub fn command_landing(&mut self) {
+        self.ordered.get_or_insert(Outcome::LandCommanded);
+    }
+
+    /// The messages handled since the last call, in order.
+    pub fn take_received(&mut self) -> Vec<Received> {
+        self.camera.take_received()
+    }
+
+    /// How often each thing happened.
+    pub fn counters(&self) -> Counters {
+        self.camera.counters()
+    }
+
+    fn motors(&self) -> bool {
+        match self.stage {
+            Stage::Ground | Stage::Landed(_) => false,
+            Stage::TakeOff { from, .. } => from.is_some(),
+            Stage::Airborne { .. } | Stage::Landing { .. } => true,
+        }
+    }
+
+    /// Does what the operator has asked for.
+    fn obey(&mut self, now_ms: u64, estimate: &Estimate) {
+        match self.ordered {
+            Some(Outcome::Killed) if self.motors() => self.stage = Stage::Landed(Outcome::Killed),
+            Some(outcome) => self.begin_landing(now_ms, estimate, outcome),
+            None => {}
+        }
+    }
+
+    fn stand(&mut self, now_ms: u64, output: &mut Output) {
+        let started_ms = *self.started_ms.get_or_insert(now_ms);
+        if now_ms - started_ms >= self.settings.ground_ms {
+            output.reset_filter = true;
+            self.stage = Stage::TakeOff {
+                since_ms: now_ms,
+                from: None,
+            };
+        }
+    }
+
+    fn take_off(
+        &mut self,
+        now_ms: u64,
+        since_ms: u64,
+        from: Option<WorldPose>,
+        estimate: &Estimate,
+    ) {
+        let Some(climbing_ms) = (now_ms - since_ms).checked_sub(vertical::RESET_MS) else {
+            return;
+        };
+        let from = from.unwrap_or_else(|| pose(estimate));
+        self.set_point = SetPoint {
+            position_m: Vector3::new(from.x, from.y, vertical::climb_m(climbing_ms)),
+            yaw_rad: from.yaw,
+        };
+        self.stage = if climbing_ms < vertical::CLIMB_MS + vertical::HOVER_MS {
+            Stage::TakeOff {
+                since_ms,
+                from: Some(from),
+            }
+        } else {
+            Stage::Airborne { since_ms: now_ms }
+        };
+    }
+
+    fn fly(&mut self, now_ms: u64, since_ms: u64, estimate: &Estimate, output: &mut Output) {
+        if now_ms % CYCLE_MS == self.settings.cycle_offset_ms % CYCLE_MS {
+            match self.decide(now_ms, since_ms, estimate) {
+                Decision::Land(outcome) => {
+                    self.begin_landing(now_ms, estimate, outcome);
+                    return;
+                }
+                Decision::GoTo(target) => self.next_target = Some(target),
+                Decision::Hold => {}
+            }
+            output.transmit = self.camera.report(pose(estimate));
+        }
+        if !self.camera.listening() {
+            return;
+        }
+        match self.camera.listen(now_ms, estimate.position_m) {
+            Ok(Some(realignment)) => {
+                self.mission.on_correction(realignment.index);
+                output.measurements.extend(realignment.measurements);
+            }
+            Ok(None) => {}
+            Err(NotFinite) => self.begin_landing(now_ms, estimate, Outcome::BrokenMessage),
+        }
+        if !self.camera.listening() {
+            self.issue_set_point();
+        }
+    }
+
+    /// The first part of a run of the loop: whether to go on, and where.
+    fn decide(&mut self, now_ms: u64, since_ms: u64, estimate: &Estimate) -> Decision {
+        if let Some(danger) = self.danger(estimate) {
+            return Decision::Land(danger);
+        }
+        if now_ms - since_ms >= self.settings.flight_limit_ms {
+            return Decision::Land(Outcome::TimedOut);
+        }
+        let view = View {
+            now_ms,
+            position: pose(estimate).point(),
+            set_point: self.set_point.place(),
+        };
+        self.mission.cycle(&view, &mut self.camera)
+    }
+
+    /// Why it is not safe to go on, if it is not.
+    fn danger(&self, estimate: &Estimate) -> Option<Outcome> {
+        let position = estimate.position_m;
+        if !position.iter().all(|coordinate| coordinate.is_finite()) {
+            Some(Outcome::PositionLost)
+        } else if libm::hypotf(position.x, position.y) >= self.settings.max_distance_m {
+            Some(Outcome::FenceBreached)
+        } else if position.z >= self.settings.max_height_m {
+            Some(Outcome::TooHigh)
+        } else {
+            None
+        }
+    }
+
+    /// The last part of a run of the loop, when the window has closed.
+    fn issue_set_point(&mut self) {
+        if let Some(target) = self.next_target.take() {
+            self.set_point.position_m = Vector3::new(target.x, target.y, FLIGHT_HEIGHT_M);
+        }
+    }
+
+    /// Straight down from here; where the filter does not know where that is, from the set-point.
+    /// Does nothing unless the drone is in the air and not landing yet.
+    fn begin_landing(&mut self, now_ms: u64, estimate: &Estimate, outcome: Outcome) {
+        match self.stage {
+            Stage::TakeOff { from: Some(_), .. } | Stage::Airborne { .. } => {
+                let here = estimate.position_m;
+                if here.iter().all(|coordinate| coordinate.is_finite()) {
+                    self.set_point.position_m = here;
+                }
+                self.camera.stop_listening();
+                self.next_target = None;
+                self.stage = Stage::Landing {
+                    since_ms: now_ms,
+                    height_m: self.set_point.position_m.z,
+                    outcome,
+                };
+            }
+            Stage::Ground | Stage::TakeOff { from: None, .. } => {
+                self.stage = Stage::Landed(outcome);
+            }
+            Stage::Landing { .. } | Stage::Landed(_) => {}
+        }
+    }
+
+    fn land(&mut self, elapsed_ms: u64, height_m: f32, outcome: Outcome) {
+        self.set_point.position_m.z = vertical::descent_m(elapsed_ms, height_m);
+        if elapsed_ms >= vertical::DESCENT_MS {
+            self.stage = Stage::Landed(outcome);
+        }
+    }
+}
+
+impl SetPoint {
+    fn place(&self) -> WorldPoint {
+        WorldPoint {
+            x: self.position_m.x,
+            y: self.position_m.y,
+        }
+    }
+}
+
+fn pose(estimate: &Estimate) -> WorldPose {
+    WorldPose {
+        x: estimate.position_m.x,
+        y: estimate.position_m.y,
+        yaw: estimate.yaw_rad(),
+    }
+}

@@ -1,0 +1,190 @@
+//! Flies a script: one step after the other, one look at each in every cycle.
+
+use link::{Mode, WorldPoint};
+
+use super::camera::Camera;
+use super::phase::{Outcome, Phase};
+use super::route::{Arrival, distance_m};
+use super::script::{Script, Step, Until};
+use super::settings::{CYCLE_MS, Settings};
+
+/// Period of the loop, s.
+const CYCLE_S: f32 = CYCLE_MS as f32 / 1_000.0;
+
+/// What a cycle knows.
+#[derive(Debug, Clone, Copy)]
+pub struct View {
+    /// The time, ms.
+    pub now_ms: u64,
+    /// Where the drone believes to be.
+    pub position: WorldPoint,
+    /// Where it has been sent.
+    pub set_point: WorldPoint,
+}
+
+/// What a cycle decided.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Decision {
+    /// Keep the set-point.
+    Hold,
+    /// Fly to a place.
+    GoTo(WorldPoint),
+    /// End the flight.
+    Land(Outcome),
+}
+
+/// A script and how far it has been flown.
+#[derive(Debug)]
+pub struct Mission {
+    settings: Settings,
+    steps: std::vec::IntoIter<Step>,
+    /// The step that is being flown; `None` at the end of the script.
+    step: Option<Step>,
+    progress: Progress,
+}
+
+/// How far a step has been flown.
+#[derive(Debug, Default)]
+struct Progress {
+    /// When the step began; `None` before its first cycle.
+    began_ms: Option<u64>,
+    /// Since when its end has been reached.
+    reached_ms: Option<u64>,
+    /// Whether the camera has given a target during the step.
+    led: bool,
+    /// Index of the last correction applied during the step.
+    realigned: Option<u16>,
+}
+
+impl Progress {
+    /// Notes whether the end is reached, and says for how long it has been.
+    fn stayed_ms(&mut self, now_ms: u64, reached: bool) -> Option<u64> {
+        if !reached {
+            return None;
+        }
+        Some(now_ms - *self.reached_ms.get_or_insert(now_ms))
+    }
+}
+
+impl Mission {
+    /// The script from its first step on.
+    pub fn new(script: Script, settings: Settings) -> Self {
+        let mut steps = script.steps.into_iter();
+        Self {
+            settings,
+            step: steps.next(),
+            steps,
+            progress: Progress::default(),
+        }
+    }
+
+    /// Whether the script or the camera leads.
+    pub fn phase(&self) -> Phase {
+        match self.step {
+            Some(Step::Follow { .. }) => Phase::Following,
+            _ => Phase::Recording,
+        }
+    }
+
+    /// A correction has been applied.
+    pub fn on_correction(&mut self, index: u16) {
+        self.progress.realigned = Some(index);
+    }
+
+    /// One cycle.
+    pub fn cycle(&mut self, view: &View, camera: &mut Camera) -> Decision {
+        let Some(step) = self.step.take() else {
+            return Decision::Land(Outcome::Completed);
+        };
+        let began_ms = *self.progress.began_ms.get_or_insert(view.now_ms);
+        let elapsed_ms = view.now_ms - began_ms;
+        let (decision, done) = match &step {
+            Step::Command { mode, args } => self.command(*mode, args, elapsed_ms, camera),
+            Step::FlyTo { place, arrival } => self.fly_to(*place, *arrival, view),
+            Step::Follow { mode, until } => {
+                let target = camera.follow(*mode);
+                self.progress.led |= target.is_some();
+                let done = self.followed(*until, elapsed_ms, view, target.is_some());
+                (self.follow(target, elapsed_ms), done)
+            }
+        };
+        if done {
+            self.step = self.steps.next();
+            self.progress = Progress::default();
+        } else {
+            self.step = Some(step);
+        }
+        decision
+    }
+
+    fn command(
+        &self,
+        mode: Mode,
+        args: &[u8],
+        elapsed_ms: u64,
+        camera: &mut Camera,
+    ) -> (Decision, bool) {
+        let echoed = camera.command(mode, args);
+        let decision = if elapsed_ms >= self.settings.echo_limit_ms {
+            Decision::Land(Outcome::NoEcho)
+        } else {
+            Decision::Hold
+        };
+        (decision, echoed)
+    }
+
+    fn fly_to(&mut self, place: WorldPoint, arrival: Arrival, view: &View) -> (Decision, bool) {
+        let set_point = match self.settings.cruise_speed_m_s {
+            Some(speed) => towards(view.set_point, place, speed * CYCLE_S),
+            None => place,
+        };
+        // Once reached, the dwell runs on even if the drone swings out of the radius.
+        let there = set_point == place && distance_m(view.position, place) <= arrival.radius_m;
+        let reached = there || self.progress.reached_ms.is_some();
+        let stayed_ms = self.progress.stayed_ms(view.now_ms, reached);
+        let done = stayed_ms >= Some(arrival.dwell_ms);
+        (Decision::GoTo(set_point), done)
+    }
+
+    fn follow(&self, target: Option<WorldPoint>, elapsed_ms: u64) -> Decision {
+        if elapsed_ms >= self.settings.follow_limit_ms {
+            return Decision::Land(Outcome::TimedOut);
+        }
+        target.map_or(Decision::Hold, Decision::GoTo)
+    }
+
+    /// Whether following is done.
+    fn followed(&mut self, until: Until, elapsed_ms: u64, view: &View, turned: bool) -> bool {
+        match until {
+            Until::Realigned(index) => {
+                let reached = self.progress.realigned == Some(index);
+                let reached = reached || self.progress.reached_ms.is_some();
+                self.progress.stayed_ms(view.now_ms, reached) >= Some(Until::SETTLE_MS)
+            }
+            Until::TargetAt(place) => {
+                let Arrival { radius_m, dwell_ms } = Arrival::PASS_END;
+                let there = distance_m(view.set_point, place) <= radius_m
+                    && distance_m(view.position, view.set_point) <= radius_m;
+                if turned {
+                    self.progress.reached_ms = None;
+                }
+                let reached = there && self.progress.led && !turned;
+                self.progress.stayed_ms(view.now_ms, reached) >= Some(dwell_ms)
+            }
+            Until::Elapsed(limit_ms) => elapsed_ms >= limit_ms,
+        }
+    }
+}
+
+/// The place `step_m` from `from` on the way to `to`, or `to` where that is nearer.
+fn towards(from: WorldPoint, to: WorldPoint, step_m: f32) -> WorldPoint {
+    let way_m = distance_m(from, to);
+    if way_m <= step_m {
+        return to;
+    }
+    let part = step_m / way_m;
+    WorldPoint {
+        x: from.x + (to.x - from.x) * part,
+        y: from.y + (to.y - from.y) * part,
+    }
+}
