@@ -92,7 +92,7 @@ fn memory_figures(summary: &Summary) -> [Figure; 4] {
             label: "Snapshots",
             value: number::grouped(summary.snapshots as u64),
             unit: "",
-            why: format!("one every {} m", number::fixed(summary.spacing_m, 2)),
+            why: format!("one every {} m", number::trimmed(summary.spacing_m, 2)),
         },
         Figure {
             label: "Frames dropped",
@@ -140,14 +140,16 @@ fn board_figures(summary: &Summary) -> [Figure; 4] {
             label: "Static RAM",
             value: image.map_or(NONE.into(), |image| kilobytes(image.ram_bytes)),
             unit: "kB",
-            why: image.map_or_else(unmeasured, |image| {
-                format!(
-                    "and {} kB of stack at its peak",
-                    kilobytes(image.stack_peak_bytes)
-                )
-            }),
+            why: image.map_or_else(unmeasured, |image| stack(image.stack_peak_bytes)),
         },
     ]
+}
+
+fn stack(peak_bytes: Option<u32>) -> String {
+    match peak_bytes {
+        Some(peak) => format!("and {} kB of stack at its peak", kilobytes(peak)),
+        None => "the stack reached into it".into(),
+    }
 }
 
 /// Thousands of bytes with one decimal.

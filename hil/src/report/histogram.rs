@@ -17,7 +17,7 @@ const HEIGHT: f64 = 170.0;
 const BOTTOM: f64 = 44.0;
 
 /// Most bins; their width is a round number.
-const MOST_BINS: usize = 72;
+const MOST_BINS: usize = 140;
 
 /// Where values are on the paper.
 struct Scales {

@@ -16,7 +16,7 @@
     svg,
     x: numbers(svg.dataset.x),
     y: numbers(svg.dataset.y),
-    box: numbers(svg.dataset.box),
+    area: numbers(svg.dataset.area),
     curves: [...svg.querySelectorAll("path[data-label]")].map((path) => ({
       label: path.dataset.label,
       points: path.getAttribute("d").split(/[ML]/).slice(1).map(numbers),
@@ -33,8 +33,8 @@
     points.reduce((best, point) => (Math.abs(point[0] - x) < Math.abs(best[0] - x) ? point : best), points[0]);
 
   const show = (time) => {
-    for (const { x, y, box, curves, line, text } of plots) {
-      const [left, top, right, bottom] = box;
+    for (const { x, y, area, curves, line, text } of plots) {
+      const [left, top, right, bottom] = area;
       const place = left + ((time - x[0]) / (x[1] - x[0])) * (right - left);
       const values = curves.filter((curve) => curve.points.length).map((curve) => {
         const value = y[1] - ((nearest(curve.points, place)[1] - top) / (bottom - top)) * (y[1] - y[0]);
@@ -52,11 +52,11 @@
     for (const node of document.querySelectorAll(".cursor, .cursor + text")) set(node, { visibility: "hidden" });
   };
 
-  for (const { svg, x, box } of plots) {
+  for (const { svg, x, area } of plots) {
     svg.addEventListener("pointermove", (event) => {
       const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse()).x;
-      if (at < box[0] || at > box[2]) return hide();
-      show(x[0] + ((at - box[0]) / (box[2] - box[0])) * (x[1] - x[0]));
+      if (at < area[0] || at > area[2]) return hide();
+      show(x[0] + ((at - area[0]) / (area[2] - area[0])) * (x[1] - x[0]));
     });
     svg.addEventListener("pointerleave", hide);
   }

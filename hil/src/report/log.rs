@@ -80,10 +80,7 @@ fn level(line: &LogLine) -> &'static str {
 fn rank(line: &LogLine) -> usize {
     const INFO: usize = 2;
     let is_level = |level: &&str| level.eq_ignore_ascii_case(&line.level);
-    LEVELS
-        .iter()
-        .position(|level| is_level(&level))
-        .unwrap_or(INFO)
+    LEVELS.iter().position(is_level).unwrap_or(INFO)
 }
 
 fn hiding_rules() -> String {

@@ -41,12 +41,24 @@ impl Shares {
     }
 }
 
+/// What all rows have in common, so that they can be compared.
+#[derive(Clone, Copy)]
+struct Scale {
+    /// Columns of bytes.
+    coefficients: usize,
+    /// Count of the longest bar.
+    largest: f64,
+    /// Deviation of the horizon that is black or white, luma.
+    full: f64,
+}
+
 /// Totals, then every snapshot with the vectors that lead back to it.
 pub fn memory(recording: &Recording, outbound_m: f64) -> Markup {
     if recording.snapshots.is_empty() && recording.odometry.is_empty() {
-        return html! { p.note { "Nothing was stored." } };
+        return html! { p { "Nothing was stored." } };
     }
     let snapshots = &recording.snapshots;
+    let largest = largest_count(snapshots);
     let full = horizon::largest_deviation(snapshots.iter().map(|mark| &mark.coefficients[..]));
     let coefficients = snapshots
         .iter()
@@ -55,6 +67,12 @@ pub fn memory(recording: &Recording, outbound_m: f64) -> Markup {
         .unwrap_or(0);
     html! {
         (totals(recording, outbound_m))
+        p.note {
+            "Each snapshot is a row: its coefficients as bars, as bytes, and as signed numbers. The remembered horizon is drawn from them alone "
+            "(one count of frequency k is 0.60 · 0.826" sup { "k−1" } " luma; the mean is not stored). "
+            "The count is the height of the odometry stack, low byte first; the vectors are those that lead back to the snapshot, in the order in which they are followed. "
+            "“Off” is how far the drone was from where it believed it was."
+        }
         div.scroll { table.memory {
             (header(coefficients))
             @if let Some(first) = snapshots.first() {
@@ -64,7 +82,7 @@ pub fn memory(recording: &Recording, outbound_m: f64) -> Markup {
             @for (place, mark) in snapshots.iter().enumerate() {
                 @let above = snapshots.get(place + 1).map_or(usize::MAX, |next| usize::from(next.odometry_count));
                 @let vectors = vectors(&recording.odometry, usize::from(mark.odometry_count), above);
-                (row(mark, &vectors, coefficients, full))
+                (row(mark, &vectors, Scale { coefficients, largest, full }))
             }
             @if snapshots.is_empty() {
                 (row_without_snapshot(&vectors(&recording.odometry, 0, usize::MAX), coefficients))
@@ -122,20 +140,20 @@ fn header(coefficients: usize) -> Markup {
     html! {
         thead { tr {
             th { "snapshot" }
-            th.strip { "remembered horizon" br; "S · W · N · E · S" }
+            th.strip { "remembered horizon" div.compass { @for wind in ["S", "W", "N", "E", "S"] { span { (wind) } } } }
             @for index in 0..coefficients {
                 th class=(byte_class(index, half)) {
                     @if index < half { "a" sub { (index + 1) } } @else { "b" sub { (index + 1 - half) } }
                 }
             }
             th.b1 { "count" br; "2 B" }
-            th { "vectors back to it" br; "2 B each; north, west in m" }
+            th { "vectors back to it" br; "2 B each: x, y in m" }
         } }
     }
 }
 
 /// One snapshot: bars, bytes, and the same bytes as signed numbers.
-fn row(mark: &SnapshotMark, vectors: &[OdometryMark], coefficients: usize, full: f64) -> Markup {
+fn row(mark: &SnapshotMark, vectors: &[OdometryMark], scale: Scale) -> Markup {
     let half = mark.coefficients.len() / 2;
     let count = mark.odometry_count.to_le_bytes();
     html! {
@@ -143,13 +161,14 @@ fn row(mark: &SnapshotMark, vectors: &[OdometryMark], coefficients: usize, full:
             tr {
                 td.who rowspan="3" {
                     b { (mark.index) } br;
-                    span { (number::fixed(mark.t, 1)) " s" br;
-                        "x " (number::fixed(mark.truth.x, 2)) br;
-                        "y " (number::fixed(mark.truth.y, 2)) br;
-                        "off by " (number::fixed(mark.believed.distance(&mark.truth), 2)) }
+                    span {
+                        (number::fixed(mark.truth.x, 2)) ", " (number::fixed(mark.truth.y, 2)) " m" br;
+                        "at " (number::fixed(mark.t, 1)) " s" br;
+                        (number::fixed(mark.believed.distance(&mark.truth), 2)) " m off"
+                    }
                 }
-                td.strip rowspan="3" { (horizon::glyph(&mark.coefficients, full)) }
-                td.bars colspan=(coefficients) { (bars(&mark.coefficients)) }
+                td.strip rowspan="3" { (horizon::glyph(&mark.coefficients, scale.full)) }
+                td.bars colspan=(scale.coefficients) { (bars(&mark.coefficients, scale.largest)) }
                 td.mono.b1 rowspan="3" {
                     (number::hex(count[0])) " " (number::hex(count[1])) br;
                     span.low { (mark.odometry_count) }
@@ -164,6 +183,14 @@ fn row(mark: &SnapshotMark, vectors: &[OdometryMark], coefficients: usize, full:
             } }
         }
     }
+}
+
+/// Largest magnitude of a coefficient, at least 1.
+fn largest_count(snapshots: &[SnapshotMark]) -> f64 {
+    let counts = snapshots.iter().flat_map(|mark| &mark.coefficients);
+    counts
+        .map(|count| f64::from(*count).abs())
+        .fold(1.0, f64::max)
 }
 
 /// Vectors that no snapshot was taken before.
@@ -185,7 +212,7 @@ fn byte_class(index: usize, half: usize) -> &'static str {
 }
 
 /// A bar for each byte, upwards if positive.
-fn bars(coefficients: &[i8]) -> Markup {
+fn bars(coefficients: &[i8], largest: f64) -> Markup {
     let [width, height] = BAR;
     let middle = height / 2.0;
     let bars: String = coefficients
@@ -193,7 +220,7 @@ fn bars(coefficients: &[i8]) -> Markup {
         .enumerate()
         .map(|(index, value)| {
             let x = index as f64 * width + width * 0.28;
-            let bar = -f64::from(*value) / 128.0 * middle;
+            let bar = -f64::from(*value) / largest * middle;
             format!(
                 "M{} {}h{}v{}h-{}z",
                 px(x),

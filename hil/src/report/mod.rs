@@ -5,6 +5,7 @@
 //! functions of the recording and the summary alone: equal flights give equal bytes, apart from
 //! the wall time that the summary brings along.
 
+mod charts;
 mod errors;
 mod figures;
 mod histogram;

@@ -16,6 +16,15 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
+/// A number with at most so many decimals, without trailing zeros.
+pub fn trimmed(value: f64, decimals: usize) -> String {
+    let text = fixed(value, decimals);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
 /// A signed count with a true minus sign.
 pub fn signed(value: i8) -> String {
     fixed(f64::from(value), 0)
@@ -49,6 +58,13 @@ mod tests {
         assert_eq!(grouped(708), "708");
         assert_eq!(grouped(168_000), "168\u{202f}000");
         assert_eq!(grouped(1_234_567), "1\u{202f}234\u{202f}567");
+    }
+
+    #[test]
+    fn trailing_zeros_are_trimmed_behind_the_point_only() {
+        assert_eq!(trimmed(2.0, 2), "2");
+        assert_eq!(trimmed(0.25, 2), "0.25");
+        assert_eq!(trimmed(10.0, 0), "10");
     }
 
     #[test]

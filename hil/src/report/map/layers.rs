@@ -83,9 +83,11 @@ pub fn flight(recording: &Recording, view: &View, most_arrows: usize) -> Markup 
     html! {
         g clip-path="url(#map-frame)" {
             path class="line uncorrected s-uncorrected" d=(path(view, track, |point| point.uncorrected)) {}
+            path class="line estimate s-muted" d=(path(view, track, |point| point.estimate)) {}
             @for (phase, piece) in out {
                 path class=(phase::line_class(phase)) d=(path(view, piece, |point| point.truth)) {}
             }
+            path class="arrow s-homing" d=(arrows(recording, view, most_arrows)) {}
             // Paper-coloured below the way back, so that it stands out where it covers the way out.
             @for (_, piece) in &back {
                 path class="line casing s-paper" d=(path(view, piece, |point| point.truth)) {}
@@ -93,8 +95,6 @@ pub fn flight(recording: &Recording, view: &View, most_arrows: usize) -> Markup 
             @for (phase, piece) in back {
                 path class=(phase::line_class(phase)) d=(path(view, piece, |point| point.truth)) {}
             }
-            path class="line estimate s-muted" d=(path(view, track, |point| point.estimate)) {}
-            path class="arrow s-homing" d=(arrows(recording, view, most_arrows)) {}
             (snapshots(&recording.snapshots, view))
             @if let Some(last) = track.last() { (legend::end_mark(at(view, last.truth))) }
             (legend::home_mark(view.place([0.0, 0.0])))
@@ -172,7 +172,7 @@ fn snapshots(marks: &[SnapshotMark], view: &View) -> Markup {
     let spots = labels::place(&dots);
     html! {
         @for (mark, (dot, _)) in marks.iter().zip(&dots).filter(|(_, (dot, _))| svg::is_finite(*dot)) {
-            circle class="dot f-paper s-ink" cx=(px(dot[0])) cy=(px(dot[1])) r="3.6" {
+            circle class="dot f-paper s-ink" cx=(px(dot[0])) cy=(px(dot[1])) r="3.2" {
                 title { (description(mark)) }
             }
         }

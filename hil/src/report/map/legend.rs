@@ -39,12 +39,12 @@ pub fn legend(left: f64, top: f64) -> Markup {
             "homing vectors",
         ),
         (dot(), "snapshots, numbered"),
-        (home_mark([17.0, 0.0]), "home: the true start"),
+        (home_mark([17.0, 0.0]), "home, the true start"),
         (end_mark([17.0, 0.0]), "end of the flight"),
-        (line("line estimate s-muted"), "where it believed to be"),
+        (line("line estimate s-muted"), "the filter's estimate"),
         (
             line("line uncorrected s-uncorrected"),
-            "belief without the camera",
+            "the same, uncorrected",
         ),
         (
             html! { path class="route s-route" d="M4 0h26" {} },
@@ -67,7 +67,7 @@ pub fn legend(left: f64, top: f64) -> Markup {
 
 fn dot() -> Markup {
     html! {
-        circle class="dot f-paper s-ink" cx="13" cy="0" r="4" {}
+        circle class="dot f-paper s-ink" cx="13" cy="0" r="3.2" {}
         text class="f-ink s-paper halo tiny" x="20" y="-2" { "7" }
     }
 }
@@ -92,7 +92,8 @@ pub fn scale_and_north(view: &View) -> Markup {
     let text = format!("{} m", number::fixed(metres, usize::from(metres < 1.0)));
     let north = frame.left + frame.width - 22.0;
     html! {
-        path class="line s-paper" stroke-width="6" opacity=".8" d=(format!("M{} {}h{}", px(x - 3.0), px(y), px(length + 6.0))) {}
+        rect class="f-paper" opacity=".85" x=(px(x - 8.0)) y=(px(y - 22.0)) width=(px(length + 16.0)) height="30" {}
+        rect class="f-paper" opacity=".85" x=(px(north - 11.0)) y=(px(y - 26.0)) width="22" height="36" {}
         path class="line s-ink" stroke-width="1.6" d=(format!("M{} {}v5h{}v-5", px(x), px(y - 5.0), px(length))) {}
         text class="f-ink s-paper halo middle" x=(px(x + length / 2.0)) y=(px(y - 6.0)) { (text) }
         path class="f-ink s-paper" d=(format!("M{} {}l6 16l-6 -4l-6 4z", px(north), px(y - 22.0))) {}

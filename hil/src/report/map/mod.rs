@@ -13,12 +13,15 @@ use super::{number, style};
 use crate::record::Recording;
 use crate::summary::Summary;
 
-/// User units across, map and legend.
-const WIDTH: f64 = 1048.0;
+/// User units across, map and legend, on the page.
+const PAGE_WIDTH: f64 = 1048.0;
+/// The same in the stand-alone picture: fewer, so that its text is larger.
+const PICTURE_WIDTH: f64 = 900.0;
 /// Left edge of the map: room for the labels of the axis.
 const LEFT: f64 = 46.0;
-/// Width of the legend's column with its gap.
-const LEGEND: f64 = 228.0;
+/// Width of the legend's column, and the gap before it.
+const LEGEND: f64 = 202.0;
+const GAP: f64 = 26.0;
 /// Least and largest height of the map.
 const HEIGHTS: [f64; 2] = [400.0, 860.0];
 /// Room for the labels of the lower axis.
@@ -33,10 +36,10 @@ const MOST_ARROWS: usize = 360;
 
 /// The map and its legend, for the page.
 pub fn figure(recording: &Recording) -> Markup {
-    let view = View::of(recording, LEFT, 6.0, WIDTH - LEFT - LEGEND, HEIGHTS);
+    let view = view(recording, 6.0, PAGE_WIDTH);
     let view_box = format!(
         "0 0 {} {}",
-        px(WIDTH),
+        px(PAGE_WIDTH),
         px(view.frame.top + view.frame.height + BOTTOM)
     );
     html! {
@@ -49,10 +52,9 @@ pub fn figure(recording: &Recording) -> Markup {
 
 /// The map by itself, with title and key figures.
 pub fn picture(recording: &Recording, summary: &Summary) -> Markup {
-    let view = View::of(recording, LEFT, TITLE, WIDTH - LEFT - LEGEND, HEIGHTS);
+    let view = view(recording, TITLE, PICTURE_WIDTH);
     let height = view.frame.top + view.frame.height + BOTTOM;
-    let (width, height) = (WIDTH + 2.0 * MARGIN, height + 2.0 * MARGIN);
-    let beside = WIDTH - LEGEND + 26.0;
+    let (width, height) = (PICTURE_WIDTH + 2.0 * MARGIN, height + 2.0 * MARGIN);
     html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("{0} {0} {1} {2}", px(-MARGIN), px(width), px(height)))
             width=(px(width)) height=(px(height)) role="img" aria-label=(headline(summary)) {
@@ -62,9 +64,13 @@ pub fn picture(recording: &Recording, summary: &Summary) -> Markup {
             text class="f-ink title" x="0" y="16" { (headline(summary)) }
             text class="f-muted subtitle" x="0" y="38" { (subline(summary)) }
             (scene(recording, &view))
-            (key_figures(summary, beside, TITLE + legend::HEIGHT + 14.0))
+            (key_figures(summary, PICTURE_WIDTH - LEGEND, TITLE + legend::HEIGHT + 14.0))
         }
     }
+}
+
+fn view(recording: &Recording, top: f64, width: f64) -> View {
+    View::of(recording, LEFT, top, width - LEFT - GAP - LEGEND, HEIGHTS)
 }
 
 fn scene(recording: &Recording, view: &View) -> Markup {
@@ -72,7 +78,7 @@ fn scene(recording: &Recording, view: &View) -> Markup {
         (layers::ground(recording, view))
         (layers::flight(recording, view, MOST_ARROWS))
         (legend::scale_and_north(view))
-        (legend::legend(WIDTH - LEGEND + 26.0, view.frame.top))
+        (legend::legend(view.frame.left + view.frame.width + GAP, view.frame.top))
     }
 }
 
@@ -86,21 +92,22 @@ pub fn headline(summary: &Summary) -> String {
             "{out} m out and home again, to within {error} m, on {memory} bytes of route memory"
         )
     } else {
-        format!("{out} m out, not home again: {}", summary.outcome)
+        format!("{out} m out, not home again")
     }
 }
 
-fn subline(summary: &Summary) -> String {
+/// What was flown, and with what.
+pub fn subline(summary: &Summary) -> String {
     let how = if summary.homing == "odometry" {
         "odometry alone"
     } else {
         "snapshots and odometry"
     };
     format!(
-        "{how} · world {} · route {} · a snapshot every {} m · seed {} · {}",
+        "World {} · route {} · {how} · snapshots {} m apart · seed {} · {}",
         summary.world,
         summary.route,
-        number::fixed(summary.spacing_m, 2),
+        number::trimmed(summary.spacing_m, 2),
         summary.seed,
         summary.backend,
     )
