@@ -6,9 +6,9 @@ use super::super::sensor::{Exposure, ImageTuning, MAX_EXPOSURE_LINES};
 pub const CLOCK: u8 = 0x02;
 /// DOUTSW (bit 7, output off), PICSIZ (bits 5..2).
 pub const OUTPUT: u8 = 0x03;
-/// ALCSW (bit 7, manual) and ESRSPD[12:8]; effective at vertical sync.
+/// ALCSW (bit 7, manual) and ESRSPD bits 12..8; effective at vertical sync.
 pub const SHUTTER_HIGH: u8 = 0x05;
-/// ESRSPD[7:0] in scan lines; effective at vertical sync.
+/// ESRSPD bits 7..0, in scan lines; effective at vertical sync.
 pub const SHUTTER_LOW: u8 = 0x06;
 /// AG, analogue gain code; effective at vertical sync.
 pub const ANALOGUE_GAIN: u8 = 0x07;
@@ -34,7 +34,7 @@ const MAX_GAIN_CODE: u8 = 0x0c;
 /// PICSIZ of sub-QCIF with the full field of view: 128 x 96.
 const PICSIZ_SUB_QCIF: u8 = 8;
 
-/// Reset values of 0x00..=0x20 in order, 0x21 first unlisted.
+/// Reset values of 0x00..=0x20.
 const DEFAULTS_LOW: [u8; 0x21] = [
     0x70, 0x10, 0x40, 0x80, 0x0f, 0x02, 0x0d, 0xc0, 0x38, 0x40, 0x00, 0x40, 0x40, 0x00, 0x2f, 0x04,
     0x22, 0x9a, 0x0c, 0x0a, 0x08, 0x38, 0x38, 0x01, 0x27, 0x04, 0x20, 0x46, 0x9e, 0x83, 0x68, 0x00,
