@@ -18,8 +18,8 @@ pub fn boot() {
     );
 }
 
-/// Once per frame: its number since boot, what it cost in core cycles, the mean luma of its
-/// horizon (0 to 255), and the exposure that was asked for last.
+/// Once per frame: its number since boot, what it cost in core cycles (interrupts included), the
+/// mean luma of its horizon (0 to 255), and the exposure that was asked for last.
 pub fn frame(number: u32, cycles: u32, luma: f32, exposure: pilot::Exposure) {
     defmt::debug!(
         "frame {=u32} cycles {=u32} luma {=f32} lines {=u16} gain {=f32}",
@@ -31,7 +31,8 @@ pub fn frame(number: u32, cycles: u32, luma: f32, exposure: pilot::Exposure) {
     );
 }
 
-/// Once per STATE message: what its decision and its answer cost in core cycles.
+/// Once per STATE message: what its decision and its answer cost in core cycles, interrupts of the
+/// urgent tasks included (those of the link are at work at that time).
 pub fn state(cycles: u32) {
     defmt::debug!("state cycles {=u32}", cycles);
 }

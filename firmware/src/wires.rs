@@ -10,6 +10,10 @@ use pilot::Exposure;
 use crate::capture::Frame;
 
 /// What vision acts on, in the order in which it happened.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to box a message in, and eight of them are 2 KiB"
+)]
 pub enum Event {
     /// From the camera task: a whole frame.
     Frame(Frame),
