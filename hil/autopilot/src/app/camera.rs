@@ -38,13 +38,13 @@ pub struct Counters {
     pub link: link::Counters,
 }
 
-/// What a receive call brought for the filter.
+/// What a message means for the rest of the app.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Realignment {
-    /// Index of the correction.
-    pub index: u16,
-    /// What to put into the filter's queue.
-    pub measurements: [Measurement; 2],
+pub enum News {
+    /// The camera has turned to the snapshot with this number.
+    ActiveSnapshot(u16),
+    /// The estimate is to be corrected: what to put into the filter's queue.
+    Realigned([Measurement; 2]),
 }
 
 /// Both directions of the link, and the state that its messages have.
@@ -126,7 +126,7 @@ impl Camera {
         &mut self,
         now_ms: u64,
         estimate_m: Vector3<f32>,
-    ) -> Result<Option<Realignment>, NotFinite> {
+    ) -> Result<Option<News>, NotFinite> {
         let Some(message) = self.uart.receive() else {
             return Ok(None);
         };
@@ -160,19 +160,17 @@ impl Camera {
         &mut self,
         message: &Message,
         estimate_m: Vector3<f32>,
-    ) -> Result<Option<Realignment>, NotFinite> {
+    ) -> Result<Option<News>, NotFinite> {
         match message {
             Message::Command(command) => self.handshake.receive(command.command),
             Message::Vector(vector) => self.goal.receive(vector.target()?),
+            Message::Map(map) => return Ok(Some(News::ActiveSnapshot(map.snapshot_index))),
             Message::InsCorrection(correction) => {
                 let measurements = self.corrections.apply(correction, estimate_m)?;
-                return Ok(measurements.map(|measurements| Realignment {
-                    index: correction.snapshot_index,
-                    measurements,
-                }));
+                return Ok(measurements.map(News::Realigned));
             }
             // Only logged, or the app's own.
-            Message::Map(_) | Message::Camera(_) | Message::State(_) | Message::Debug(_) => {}
+            Message::Camera(_) | Message::State(_) | Message::Debug(_) => {}
         }
         Ok(None)
     }

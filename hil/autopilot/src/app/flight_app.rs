@@ -3,32 +3,22 @@
 use link::{NotFinite, WorldPoint, WorldPose};
 use nalgebra::Vector3;
 
-use super::camera::{Camera, Counters, Received};
+use super::camera::{Camera, Counters, News, Received};
 use super::mission::{Decision, Mission, View};
 use super::phase::{Outcome, Phase};
 use super::script::Script;
 use super::settings::{CYCLE_MS, FLIGHT_HEIGHT_M, Settings};
 use super::vertical;
+use crate::controller::SetPoint;
 use crate::ekf::{Estimate, Measurement};
-
-/// Where the position controller is to hold the drone.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SetPoint {
-    /// Position in the world, m.
-    pub position_m: Vector3<f32>,
-    /// Heading, rad, counter-clockwise. The app holds that of the take-off.
-    pub yaw_rad: f32,
-}
 
 /// What one millisecond asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Output {
     /// Bytes to send to the camera.
     pub transmit: Vec<u8>,
-    /// Where to be.
+    /// What the controller is to do.
     pub set_point: SetPoint,
-    /// Whether the motors may turn.
-    pub motors: bool,
     /// Whether the filter is to start afresh.
     pub reset_filter: bool,
     /// What to put into the filter's queue, in this order.
@@ -64,7 +54,10 @@ pub struct FlightApp {
     stage: Stage,
     /// Time of the first tick, ms.
     started_ms: Option<u64>,
-    set_point: SetPoint,
+    /// Where to be, m.
+    position_m: Vector3<f32>,
+    /// Heading to hold, rad, counter-clockwise: that of the take-off.
+    yaw_rad: f32,
     /// Decided in a cycle, issued at the end of its receive window.
     next_target: Option<WorldPoint>,
     /// What the operator has asked for from outside the script.
@@ -80,10 +73,8 @@ impl FlightApp {
             camera: Camera::new(settings.correction),
             stage: Stage::Ground,
             started_ms: None,
-            set_point: SetPoint {
-                position_m: Vector3::zeros(),
-                yaw_rad: 0.0,
-            },
+            position_m: Vector3::zeros(),
+            yaw_rad: 0.0,
             next_target: None,
             ordered: None,
         }
@@ -95,8 +86,7 @@ impl FlightApp {
         self.camera.arrive(received);
         let mut output = Output {
             transmit: Vec::new(),
-            set_point: self.set_point,
-            motors: true,
+            set_point: SetPoint::MotorsOff,
             reset_filter: false,
             measurements: Vec::new(),
         };
@@ -112,8 +102,7 @@ impl FlightApp {
             } => self.land(now_ms - since_ms, height_m, outcome),
             Stage::Landed(_) => {}
         }
-        output.set_point = self.set_point;
-        output.motors = self.motors();
+        output.set_point = self.set_point();
         output
     }
 
@@ -148,7 +137,18 @@ impl FlightApp {
         self.camera.counters()
     }
 
-    fn motors(&self) -> bool {
+    fn set_point(&self) -> SetPoint {
+        if self.motors_turn() {
+            SetPoint::Hold {
+                position_m: self.position_m,
+                yaw_rad: self.yaw_rad,
+            }
+        } else {
+            SetPoint::MotorsOff
+        }
+    }
+
+    fn motors_turn(&self) -> bool {
         match self.stage {
             Stage::Ground | Stage::Landed(_) => false,
             Stage::TakeOff { from, .. } => from.is_some(),
@@ -159,7 +159,9 @@ impl FlightApp {
     /// Does what the operator has asked for.
     fn obey(&mut self, now_ms: u64, estimate: &Estimate) {
         match self.ordered {
-            Some(Outcome::Killed) if self.motors() => self.stage = Stage::Landed(Outcome::Killed),
+            Some(Outcome::Killed) if self.motors_turn() => {
+                self.stage = Stage::Landed(Outcome::Killed)
+            }
             Some(outcome) => self.begin_landing(now_ms, estimate, outcome),
             None => {}
         }
@@ -187,10 +189,8 @@ impl FlightApp {
             return;
         };
         let from = from.unwrap_or_else(|| pose(estimate));
-        self.set_point = SetPoint {
-            position_m: Vector3::new(from.x, from.y, vertical::climb_m(climbing_ms)),
-            yaw_rad: from.yaw,
-        };
+        self.position_m = Vector3::new(from.x, from.y, vertical::climb_m(climbing_ms));
+        self.yaw_rad = from.yaw;
         self.stage = if climbing_ms < vertical::CLIMB_MS + vertical::HOVER_MS {
             Stage::TakeOff {
                 since_ms,
@@ -217,9 +217,10 @@ impl FlightApp {
             return;
         }
         match self.camera.listen(now_ms, estimate.position_m) {
-            Ok(Some(realignment)) => {
-                self.mission.on_correction(realignment.index);
-                output.measurements.extend(realignment.measurements);
+            Ok(Some(News::ActiveSnapshot(index))) => self.mission.on_active_snapshot(index),
+            Ok(Some(News::Realigned(measurements))) => {
+                self.mission.on_realignment();
+                output.measurements.extend(measurements);
             }
             Ok(None) => {}
             Err(NotFinite) => self.begin_landing(now_ms, estimate, Outcome::BrokenMessage),
@@ -240,7 +241,10 @@ impl FlightApp {
         let view = View {
             now_ms,
             position: pose(estimate).point(),
-            set_point: self.set_point.place(),
+            set_point: WorldPoint {
+                x: self.position_m.x,
+                y: self.position_m.y,
+            },
         };
         self.mission.cycle(&view, &mut self.camera)
     }
@@ -262,7 +266,7 @@ impl FlightApp {
     /// The last part of a run of the loop, when the window has closed.
     fn issue_set_point(&mut self) {
         if let Some(target) = self.next_target.take() {
-            self.set_point.position_m = Vector3::new(target.x, target.y, FLIGHT_HEIGHT_M);
+            self.position_m = Vector3::new(target.x, target.y, FLIGHT_HEIGHT_M);
         }
     }
 
@@ -273,13 +277,13 @@ impl FlightApp {
             Stage::TakeOff { from: Some(_), .. } | Stage::Airborne { .. } => {
                 let here = estimate.position_m;
                 if here.iter().all(|coordinate| coordinate.is_finite()) {
-                    self.set_point.position_m = here;
+                    self.position_m = here;
                 }
                 self.camera.stop_listening();
                 self.next_target = None;
                 self.stage = Stage::Landing {
                     since_ms: now_ms,
-                    height_m: self.set_point.position_m.z,
+                    height_m: self.position_m.z,
                     outcome,
                 };
             }
@@ -291,18 +295,9 @@ impl FlightApp {
     }
 
     fn land(&mut self, elapsed_ms: u64, height_m: f32, outcome: Outcome) {
-        self.set_point.position_m.z = vertical::descent_m(elapsed_ms, height_m);
+        self.position_m.z = vertical::descent_m(elapsed_ms, height_m);
         if elapsed_ms >= vertical::DESCENT_MS {
             self.stage = Stage::Landed(outcome);
-        }
-    }
-}
-
-impl SetPoint {
-    fn place(&self) -> WorldPoint {
-        WorldPoint {
-            x: self.position_m.x,
-            y: self.position_m.y,
         }
     }
 }

@@ -5,7 +5,7 @@ use link::{Mode, WorldPoint};
 use super::camera::Camera;
 use super::phase::{Outcome, Phase};
 use super::route::{Arrival, distance_m};
-use super::script::{Script, Step, Until};
+use super::script::{FIRST_SNAPSHOT, Script, Step, Until};
 use super::settings::{CYCLE_MS, Settings};
 
 /// Period of the loop, s.
@@ -52,14 +52,17 @@ struct Progress {
     reached_ms: Option<u64>,
     /// Whether the camera has given a target during the step.
     led: bool,
-    /// Index of the last correction applied during the step.
-    realigned: Option<u16>,
+    /// Whether the camera has turned to the first snapshot of the route during the step.
+    at_first: bool,
+    /// Whether a correction has been applied since then.
+    realigned: bool,
 }
 
 impl Progress {
-    /// Notes whether the end is reached, and says for how long it has been.
+    /// Notes whether the end is reached now, and says for how long it has been.
     fn stayed_ms(&mut self, now_ms: u64, reached: bool) -> Option<u64> {
         if !reached {
+            self.reached_ms = None;
             return None;
         }
         Some(now_ms - *self.reached_ms.get_or_insert(now_ms))
@@ -86,9 +89,17 @@ impl Mission {
         }
     }
 
+    /// The camera has turned to a snapshot.
+    pub fn on_active_snapshot(&mut self, index: u16) {
+        self.progress.at_first |= index == FIRST_SNAPSHOT;
+    }
+
     /// A correction has been applied.
-    pub fn on_correction(&mut self, index: u16) {
-        self.progress.realigned = Some(index);
+    pub fn on_realignment(&mut self) {
+        if self.progress.at_first && !self.progress.realigned {
+            self.progress.realigned = true;
+            self.progress.reached_ms = None;
+        }
     }
 
     /// One cycle.
@@ -155,21 +166,20 @@ impl Mission {
 
     /// Whether following is done.
     fn followed(&mut self, until: Until, elapsed_ms: u64, view: &View, turned: bool) -> bool {
+        let there = distance_m(view.position, view.set_point) <= Arrival::PASS_END.radius_m;
+        let resting = there && self.progress.led && !turned;
         match until {
-            Until::Realigned(index) => {
-                let reached = self.progress.realigned == Some(index);
-                let reached = reached || self.progress.reached_ms.is_some();
-                self.progress.stayed_ms(view.now_ms, reached) >= Some(Until::SETTLE_MS)
+            Until::Home if self.progress.realigned => {
+                self.progress.stayed_ms(view.now_ms, true) >= Some(Until::SETTLE_MS)
+            }
+            Until::Home => {
+                let reached = resting && self.progress.at_first;
+                self.progress.stayed_ms(view.now_ms, reached) >= Some(Until::REST_MS)
             }
             Until::TargetAt(place) => {
-                let Arrival { radius_m, dwell_ms } = Arrival::PASS_END;
-                let there = distance_m(view.set_point, place) <= radius_m
-                    && distance_m(view.position, view.set_point) <= radius_m;
-                if turned {
-                    self.progress.reached_ms = None;
-                }
-                let reached = there && self.progress.led && !turned;
-                self.progress.stayed_ms(view.now_ms, reached) >= Some(dwell_ms)
+                let near = distance_m(view.set_point, place) <= Arrival::PASS_END.radius_m;
+                let stayed_ms = self.progress.stayed_ms(view.now_ms, resting && near);
+                stayed_ms >= Some(Arrival::PASS_END.dwell_ms)
             }
             Until::Elapsed(limit_ms) => elapsed_ms >= limit_ms,
         }

@@ -36,8 +36,8 @@ mod vertical;
 mod tests;
 
 pub use camera::{Counters, Received};
-pub use flight_app::{FlightApp, Output, SetPoint};
+pub use flight_app::{FlightApp, Output};
 pub use phase::{Outcome, Phase};
 pub use route::{Arrival, Route, Waypoint};
-pub use script::{FIRST_SNAPSHOT, Script, Step, Until};
+pub use script::{Script, Step, Until};
 pub use settings::{CYCLE_MS, CorrectionSd, FLIGHT_HEIGHT_M, Settings};

@@ -4,9 +4,8 @@ use link::{Mode, Record, WorldPoint};
 
 use super::route::{Arrival, Route};
 
-/// Index of the correction that belongs to the first snapshot of a route. Indices count from 1,
-/// because the app ignores a first correction with index 0.
-pub const FIRST_SNAPSHOT: u16 = 1;
+/// Number of a route's first snapshot in the camera's MAP messages.
+pub(super) const FIRST_SNAPSHOT: u16 = 0;
 
 /// How long the single-snapshot experiment homes, ms (published app).
 const SINGLE_SNAPSHOT_MS: u64 = 20_000;
@@ -40,8 +39,10 @@ pub enum Step {
 /// When following is done.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Until {
-    /// The correction with this index has been applied, and a second has passed.
-    Realigned(u16),
+    /// The camera has turned to the route's first snapshot (MAP), and then either a correction has
+    /// been applied and a second has passed, or target and drone have rested for ten: the camera
+    /// arrived without recognising the place.
+    Home,
     /// The camera's target has been at this place, and the drone at the target, without a change
     /// for as long as the end of a pass asks (a target on the way is left behind at once).
     TargetAt(WorldPoint),
@@ -53,6 +54,8 @@ impl Until {
     /// How long the drone goes on following after it has realigned, ms: time to come to rest at the
     /// corrected place.
     pub(super) const SETTLE_MS: u64 = 1_000;
+    /// How long target and drone must rest, ms: longer than the camera homes at any snapshot.
+    pub(super) const REST_MS: u64 = 10_000;
 }
 
 /// Steps from after take-off to before landing.
@@ -65,8 +68,8 @@ pub struct Script {
 impl Script {
     /// Record a route and fly it back: go to its start, clear, record along the waypoints, follow.
     ///
-    /// With snapshots, following ends when the drone has realigned at the first of them; without,
-    /// when the camera's target stays at the route's start. `args` go with the recording command.
+    /// With snapshots, following ends at the first of them ([`Until::Home`]); without, when the
+    /// camera's target stays at the route's start. `args` go with the recording command.
     pub fn record_and_return(route: &Route, record: Record, args: &[u8]) -> Self {
         let mut waypoints = route.waypoints.iter().map(|waypoint| Step::FlyTo {
             place: waypoint.place,
@@ -79,7 +82,7 @@ impl Script {
         steps.push(Step::Follow {
             mode: Mode::Follow,
             until: if record.snapshots {
-                Until::Realigned(FIRST_SNAPSHOT)
+                Until::Home
             } else {
                 Until::TargetAt(route.start().unwrap_or_default())
             },
