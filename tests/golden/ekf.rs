@@ -34,7 +34,10 @@ fn assert_follows(name: &str, seconds: usize) {
         ("variances", found.variance_share, LIMITS.variance_share),
         ("covariances", found.correlation, LIMITS.correlation),
     ] {
-        assert!(value <= limit, "{name}: {what} off by {value}, limit {limit}");
+        assert!(
+            value <= limit,
+            "{name}: {what} off by {value}, limit {limit}"
+        );
     }
 }
 
