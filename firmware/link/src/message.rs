@@ -8,7 +8,7 @@ use heapless::Vec;
 use crate::field::{Reader, Writer};
 use crate::frame::MAX_BODY_LEN;
 
-/// Most bytes in a [`Debug`]: what a frame of 255 bytes leaves.
+/// Most bytes in a [`struct@Debug`]: what a frame of 255 bytes leaves.
 pub const DEBUG_CAPACITY: usize = MAX_BODY_LEN - layout::DEBUG.fixed;
 /// Most arguments of a [`Command`]: what a frame of 255 bytes leaves.
 pub const COMMAND_CAPACITY: usize = MAX_BODY_LEN - layout::COMMAND.fixed;

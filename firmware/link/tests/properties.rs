@@ -2,8 +2,10 @@
 
 mod common;
 
+use std::f32::consts::PI;
+
 use common::{LONGEST_CLAIM, frame, frames_in, frames_in_ended, message, stream};
-use link::{Message, Parser};
+use link::{InsCorrection, Message, Parser, State, WorldPose};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -92,6 +94,25 @@ proptest! {
         prop_assert_eq!(&frames, &frames_in_ended(&stream));
         let delivered: usize = frames.iter().map(Vec::len).sum();
         prop_assert_eq!(delivered + parser.counters().bytes_skipped as usize, stream.len());
+    }
+
+    #[test]
+    fn a_pose_comes_back_from_the_wire_unchanged(x in -1e3f32..1e3, y in -1e3f32..1e3, yaw in -4f32..4.0) {
+        let pose = WorldPose { x, y, yaw };
+        prop_assert_eq!(State::from_world(pose).pose(), Ok(pose));
+    }
+
+    #[test]
+    fn a_correction_turns_by_the_difference_of_the_headings_and_by_half_a_turn_at_most(
+        from in -10f32..10.0,
+        to in -10f32..10.0,
+    ) {
+        let at = |yaw| WorldPose { x: 0.0, y: 0.0, yaw };
+        let message = InsCorrection::from_world(1, at(from), at(to)).map_err(|_| "finite")?;
+        let turn = message.psi_to - message.psi_from;
+        prop_assert!(turn.abs() <= PI + 1e-5);
+        let missing = (f64::from(turn) - f64::from(from - to)) / (2.0 * std::f64::consts::PI);
+        prop_assert!((missing - missing.round()).abs() < 1e-5, "{missing} turns");
     }
 
     #[test]
