@@ -55,12 +55,14 @@ pub struct Section {
     pub size: u32,
 }
 
+#[derive(Clone, Debug)]
 struct Segment {
     /// Physical (load) address: `.data` is loaded to flash, and copied to RAM by the start-up code.
     address: u32,
     bytes: Vec<u8>,
 }
 
+#[derive(Clone, Debug)]
 struct Name {
     symbol: Symbol,
     mangled: String,
@@ -69,6 +71,7 @@ struct Name {
 }
 
 /// A parsed ELF file.
+#[derive(Clone, Debug)]
 pub struct Image {
     segments: Vec<Segment>,
     sections: Vec<Section>,

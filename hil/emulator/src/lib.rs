@@ -2,6 +2,8 @@
 
 pub mod core;
 pub mod image;
+pub mod machine;
 pub mod memory;
+pub mod soc;
 pub mod time;
 pub mod wiring;

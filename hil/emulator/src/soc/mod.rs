@@ -1,0 +1,278 @@
+//! The STM32F407 around the core: clocks, memory-mapped blocks, and the schedule that ties them to
+//! the cycle counter (RM0090).
+//!
+//! Blocks act at the exact cycle of their events and in the order of those cycles, whenever
+//! somebody looks; so a run does not depend on how it is sliced. What the model does not have stops
+//! the run with a [`Refusal`].
+
+mod clocks;
+mod dcmi;
+mod dma;
+mod exti;
+mod flash;
+mod gpio;
+mod i2c;
+mod identity;
+mod interrupts;
+mod map;
+mod outputs;
+mod power;
+mod reach;
+mod refusal;
+mod registers;
+mod timeline;
+mod timer;
+mod usart;
+mod watchdog;
+
+pub use dcmi::DcmiCounters;
+pub use flash::FlashTiming;
+pub use interrupts::Lines;
+pub use map::Block;
+pub use refusal::Refusal;
+pub use timeline::{NEVER, Timeline};
+pub use usart::UsartCounters;
+
+use crate::core::Cycle;
+use crate::memory::Memory;
+use crate::time::Nanos;
+use crate::wiring::Wiring;
+use clocks::{ClockTree, Rcc};
+use dcmi::Dcmi;
+use dma::Dma;
+use exti::{Exti, Syscfg};
+use flash::Flash;
+use gpio::Gpio;
+use i2c::I2c;
+use identity::Debug;
+use outputs::{Outputs, Sources};
+use power::Power;
+use reach::Reach;
+use timer::Timer;
+use usart::Usart;
+use watchdog::Watchdog;
+
+/// Everything on the chip but the core and the plain memories, and the wiring around it.
+pub struct Soc<W> {
+    wiring: W,
+    time: Timeline,
+    tree: ClockTree,
+    rcc: Rcc,
+    power: Power,
+    flash: Flash,
+    /// Port A first.
+    ports: [Gpio; 9],
+    syscfg: Syscfg,
+    exti: Exti,
+    dma: Dma,
+    /// TIM1 first.
+    timers: [Timer; 14],
+    /// USART1 first.
+    usarts: [Usart; 6],
+    /// I2C1 first.
+    i2cs: [I2c; 3],
+    dcmi: Dcmi,
+    watchdog: Watchdog,
+    debug: Debug,
+    outputs: Outputs,
+    /// The camera had nothing to say at this instant: it is not asked again before the next.
+    camera_silent_at: Option<Nanos>,
+    /// The next event, until something may have changed it.
+    next: Option<Cycle>,
+    refusal: Option<Refusal>,
+}
+
+impl<W: Wiring> Soc<W> {
+    /// The chip after power-on, with a crystal of `crystal_hz` and `wiring` around it.
+    pub fn new(crystal_hz: u32, wiring: W) -> Self {
+        Self {
+            wiring,
+            time: Timeline::new(ClockTree::RESET.hclk),
+            tree: ClockTree::RESET,
+            rcc: Rcc::new(crystal_hz),
+            power: Power::new(),
+            flash: Flash::default(),
+            ports: core::array::from_fn(|port| Gpio::new(port as u8)),
+            syscfg: Syscfg::default(),
+            exti: Exti::default(),
+            dma: Dma::new(),
+            timers: core::array::from_fn(|index| Timer::new(index as u8 + 1)),
+            usarts: core::array::from_fn(|index| Usart::new(index as u8 + 1)),
+            i2cs: core::array::from_fn(|index| I2c::new(index as u8 + 1)),
+            dcmi: Dcmi::new(),
+            watchdog: Watchdog::new(),
+            debug: Debug::default(),
+            outputs: Outputs::new(),
+            camera_silent_at: None,
+            next: None,
+            refusal: None,
+        }
+    }
+
+    /// The devices around the chip.
+    pub fn wiring(&self) -> &W {
+        &self.wiring
+    }
+
+    /// The devices around the chip, to be changed from outside.
+    pub fn wiring_mut(&mut self) -> &mut W {
+        self.next = None;
+        self.camera_silent_at = None;
+        &mut self.wiring
+    }
+
+    /// The relation of cycles to virtual time.
+    pub fn time(&self) -> &Timeline {
+        &self.time
+    }
+
+    /// How fetches meet the flash memory now.
+    pub fn flash_timing(&self) -> FlashTiming {
+        self.flash.timing()
+    }
+
+    /// Why the run must stop, if it must.
+    pub fn refusal(&self) -> Option<&Refusal> {
+        self.refusal.as_ref()
+    }
+
+    /// What became of the camera's frames.
+    pub fn dcmi_counters(&self) -> DcmiCounters {
+        self.dcmi.counters()
+    }
+
+    /// USART `number`, 1..=6.
+    fn usart(&mut self, number: u8) -> Option<&mut Usart> {
+        self.next = None;
+        self.usarts.get_mut(usize::from(number).checked_sub(1)?)
+    }
+
+    /// Puts bytes on the RX line of USART `number` (1..=6; others are not connected).
+    pub fn usart_send(&mut self, number: u8, at: Nanos, bytes: &[u8]) {
+        if let Some(usart) = self.usart(number) {
+            usart.send(at, bytes);
+        }
+    }
+
+    /// Takes the bytes USART `number` sent.
+    pub fn usart_received(&mut self, number: u8) -> Vec<(Nanos, u8)> {
+        self.usart(number).map(Usart::take_sent).unwrap_or_default()
+    }
+
+    /// What passed over the wires of USART `number`.
+    pub fn usart_counters(&self, number: u8) -> UsartCounters {
+        let usart = self.usarts.get(usize::from(number).wrapping_sub(1));
+        usart.map(Usart::counters).unwrap_or_default()
+    }
+
+    /// The next cycle at which a block does something by itself.
+    pub fn next_event(&mut self) -> Cycle {
+        if let Some(next) = self.next {
+            return next;
+        }
+        let timers = self.timers.iter().map(Timer::next);
+        let usarts = self.usarts.iter().map(|usart| usart.next(&self.time));
+        let i2cs = self.i2cs.iter().map(I2c::next);
+        let rest = [self.camera_cycle(), self.watchdog_cycle()];
+        let all = timers.chain(usarts).chain(i2cs).chain(rest);
+        let next = all.min().unwrap_or(NEVER);
+        self.next = Some(next);
+        next
+    }
+
+    fn camera_cycle(&self) -> Cycle {
+        let due = self.wiring.camera_next();
+        let due = due.filter(|&due| self.camera_silent_at.is_none_or(|silent| due > silent));
+        due.map_or(NEVER, |due| self.time.cycle_at(due))
+    }
+
+    fn watchdog_cycle(&self) -> Cycle {
+        let expiry = self.watchdog.expires();
+        expiry.map_or(NEVER, |expiry| self.time.cycle_at(expiry))
+    }
+
+    /// Performs all events up to and including `now`, in their order.
+    pub fn advance(&mut self, memory: &mut Memory, now: Cycle) {
+        while self.refusal.is_none() {
+            let due = self.next_event();
+            if due > now {
+                return;
+            }
+            self.next = None;
+            self.perform(memory, due);
+        }
+    }
+
+    /// Performs the events of one cycle.
+    fn perform(&mut self, memory: &mut Memory, now: Cycle) {
+        if self.watchdog_cycle() <= now {
+            self.refusal = Some(Refusal::Watchdog);
+            return;
+        }
+        let mut outputs = false;
+        for timer in &mut self.timers {
+            if timer.next() <= now {
+                timer.sync(now);
+                outputs |= timer.drives_pins();
+            }
+        }
+        if outputs {
+            self.refresh_outputs(now);
+        }
+        for usart in &mut self.usarts {
+            if usart.next(&self.time) <= now {
+                usart.advance(now, &self.time, memory, &mut self.dma);
+            }
+        }
+        for i2c in &mut self.i2cs {
+            if i2c.next() <= now {
+                i2c.advance(&mut Reach {
+                    now,
+                    time: &self.time,
+                    memory: &mut *memory,
+                    dma: &mut self.dma,
+                    wiring: &mut self.wiring,
+                });
+            }
+        }
+        if self.camera_cycle() <= now {
+            self.camera_edge(memory);
+        }
+    }
+
+    fn camera_edge(&mut self, memory: &mut Memory) {
+        let Some(due) = self.wiring.camera_next() else {
+            return;
+        };
+        match self.wiring.camera_signal(due) {
+            Some(signal) => self.dcmi.signal(signal, memory, &mut self.dma),
+            None => self.camera_silent_at = Some(due),
+        }
+    }
+
+    /// The level of every interrupt line.
+    pub fn lines(&self) -> Lines {
+        let mut lines = Lines::default();
+        self.timers.iter().for_each(|timer| timer.drive(&mut lines));
+        self.usarts.iter().for_each(|usart| usart.drive(&mut lines));
+        self.i2cs.iter().for_each(|i2c| i2c.drive(&mut lines));
+        self.dma.drive(&mut lines);
+        self.dcmi.drive(&mut lines);
+        self.exti.drive(&mut lines);
+        lines
+    }
+
+    fn refresh_outputs(&mut self, now: Cycle) {
+        let sources = Sources {
+            rcc: &self.rcc,
+            tree: self.tree,
+            timers: &self.timers,
+            ports: &self.ports,
+        };
+        let now = self.time.nanos(now);
+        self.outputs.refresh(&sources, now, &mut self.wiring);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,28 @@
+//! What a block may reach while it acts.
+
+use super::dma::Dma;
+use super::timeline::Timeline;
+use crate::core::Cycle;
+use crate::memory::Memory;
+use crate::time::Nanos;
+
+/// The surroundings of a block at one instant.
+pub struct Reach<'a, W> {
+    /// The instant.
+    pub now: Cycle,
+    /// Its relation to virtual time.
+    pub time: &'a Timeline,
+    /// Where DMA reads and writes.
+    pub memory: &'a mut Memory,
+    /// The streams that may serve a request.
+    pub dma: &'a mut Dma,
+    /// The devices around the chip.
+    pub wiring: &'a mut W,
+}
+
+impl<W> Reach<'_, W> {
+    /// The instant in virtual time.
+    pub fn nanos(&self) -> Nanos {
+        self.time.nanos(self.now)
+    }
+}

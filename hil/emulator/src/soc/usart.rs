@@ -1,0 +1,350 @@
+//! USART1 to 6 as asynchronous 8-bit receivers and transmitters, by DMA or by hand (RM0090 §30).
+
+use std::collections::VecDeque;
+
+use super::dma::{Dma, Request};
+use super::interrupts::{self, Lines};
+use super::map::Block;
+use super::refusal::Refusal;
+use super::timeline::{NEVER, Timeline};
+use crate::core::Cycle;
+use crate::memory::Memory;
+use crate::time::Nanos;
+
+const SR: u32 = 0x00;
+const DR: u32 = 0x04;
+const BRR: u32 = 0x08;
+const CR1: u32 = 0x0c;
+const CR2: u32 = 0x10;
+const CR3: u32 = 0x14;
+const GTPR: u32 = 0x18;
+
+/// SR. PE, FE and NF are never set: the emulated wire is clean.
+const OVERRUN: u32 = 1 << 3;
+const IDLE: u32 = 1 << 4;
+const RECEIVED: u32 = 1 << 5;
+const COMPLETE: u32 = 1 << 6;
+const EMPTY: u32 = 1 << 7;
+/// Cleared by reading SR, then DR.
+const CLEARED_BY_SEQUENCE: u32 = 0x1f;
+
+/// CR1.
+const RECEIVER: u32 = 1 << 2;
+const TRANSMITTER: u32 = 1 << 3;
+const ENABLE: u32 = 1 << 13;
+const OVERSAMPLE_BY_8: u32 = 1 << 15;
+/// SBK, RWU, PS, PCE, WAKE, M.
+const CR1_UNMODELLED: u32 = 0x1e03;
+/// IDLEIE to TXEIE are at the places of their flags.
+const CR1_INTERRUPTS: u32 = 0xf0;
+/// CLKEN and LINEN.
+const CR2_UNMODELLED: u32 = 0x4800;
+/// IrDA, half duplex, smartcard and flow control.
+const CR3_UNMODELLED: u32 = 0x073e;
+const CR3_ERROR_INTERRUPT: u32 = 1 << 0;
+const CR3_DMA_RECEIVE: u32 = 1 << 6;
+const CR3_DMA_SEND: u32 = 1 << 7;
+
+/// What passed over one USART's wires.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UsartCounters {
+    /// Bytes the chip took from its RX line.
+    pub received: u64,
+    /// Bytes the chip sent.
+    pub sent: u64,
+    /// Bytes lost because the one before had not been read.
+    pub overruns: u64,
+    /// Bytes lost because the receiver was off.
+    pub lost: u64,
+}
+
+/// A byte in a shift register.
+#[derive(Clone, Copy, Debug)]
+struct Shift {
+    byte: u8,
+    /// The end of its stop bit.
+    ends: Cycle,
+}
+
+/// One USART and the two wires it is on.
+#[derive(Clone, Debug)]
+pub struct Usart {
+    number: u8,
+    /// HCLK cycles of one bus clock.
+    bus_cycles: u64,
+    sr: u32,
+    /// Flags of the sequence-cleared kind that the last read of SR showed.
+    seen: u32,
+    received: u8,
+    to_send: Option<u8>,
+    sending: Option<Shift>,
+    brr: u32,
+    cr1: u32,
+    cr2: u32,
+    cr3: u32,
+    gtpr: u32,
+    /// Bytes the other end will send, none before its instant.
+    line: VecDeque<(Nanos, u8)>,
+    arriving: Option<Shift>,
+    line_free: Cycle,
+    idle_at: Cycle,
+    sent: Vec<(Nanos, u8)>,
+    counters: UsartCounters,
+}
+
+impl Usart {
+    /// The reset state of USART `number`, 1..=6.
+    pub fn new(number: u8) -> Self {
+        Self {
+            number,
+            bus_cycles: 1,
+            sr: COMPLETE,
+            seen: 0,
+            received: 0,
+            to_send: None,
+            sending: None,
+            brr: 0,
+            cr1: 0,
+            cr2: 0,
+            cr3: 0,
+            gtpr: 0,
+            line: VecDeque::new(),
+            arriving: None,
+            line_free: 0,
+            idle_at: NEVER,
+            sent: Vec::new(),
+            counters: UsartCounters::default(),
+        }
+    }
+
+    /// Back to the reset state. What is on the wires stays there.
+    pub fn reset(&mut self) {
+        let before = core::mem::replace(self, Self::new(self.number));
+        self.bus_cycles = before.bus_cycles;
+        self.line = before.line;
+        self.line_free = before.line_free;
+        self.sent = before.sent;
+        self.counters = before.counters;
+    }
+
+    /// One bus clock is now `cycles` of HCLK; bytes in flight keep their end.
+    pub fn set_clock(&mut self, cycles: u64) {
+        self.bus_cycles = cycles;
+    }
+
+    /// Puts bytes on the RX line, back to back, the first not before `at`.
+    pub fn send(&mut self, at: Nanos, bytes: &[u8]) {
+        self.line.extend(bytes.iter().map(|&byte| (at, byte)));
+    }
+
+    /// The bytes the chip sent since the last call, each at the end of its stop bit.
+    pub fn take_sent(&mut self) -> Vec<(Nanos, u8)> {
+        core::mem::take(&mut self.sent)
+    }
+
+    /// What passed over the wires so far.
+    pub fn counters(&self) -> UsartCounters {
+        self.counters
+    }
+
+    /// HCLK cycles of one character: start bit, eight data bits and the stop bits of CR2.
+    fn character_cycles(&self) -> u64 {
+        let bus_clocks_per_bit = if self.cr1 & OVERSAMPLE_BY_8 != 0 {
+            8 * (self.brr >> 4) + (self.brr & 7)
+        } else {
+            self.brr
+        };
+        let half_bits = 18 + [2, 1, 4, 3][(self.cr2 >> 12 & 3) as usize];
+        u64::from(bus_clocks_per_bit) * self.bus_cycles * half_bits / 2
+    }
+
+    fn on(&self, direction: u32) -> bool {
+        self.cr1 & (ENABLE | direction) == ENABLE | direction && self.brr >= 16
+    }
+
+    /// The next cycle at which something happens on the wires.
+    pub fn next(&self, time: &Timeline) -> Cycle {
+        let arrival = match self.arriving {
+            Some(shift) => shift.ends,
+            None => self.next_start(time),
+        };
+        let departure = self.sending.map_or(NEVER, |shift| shift.ends);
+        arrival.min(departure).min(self.idle_at)
+    }
+
+    fn next_start(&self, time: &Timeline) -> Cycle {
+        let first = self.line.front();
+        first.map_or(NEVER, |&(at, _)| time.cycle_at(at).max(self.line_free))
+    }
+
+    /// Performs what is due at `now`.
+    pub fn advance(&mut self, now: Cycle, time: &Timeline, memory: &mut Memory, dma: &mut Dma) {
+        if let Some(shift) = self.sending.filter(|shift| shift.ends <= now) {
+            self.sending = None;
+            self.sent.push((time.nanos(shift.ends), shift.byte));
+            self.counters.sent += 1;
+            self.serve(shift.ends, memory, dma);
+            if self.sending.is_none() {
+                self.sr |= COMPLETE;
+            }
+        }
+        if let Some(shift) = self.arriving.filter(|shift| shift.ends <= now) {
+            self.arriving = None;
+            self.receive(shift);
+            self.serve(now, memory, dma);
+        }
+        if self.idle_at <= now {
+            self.idle_at = NEVER;
+            self.sr |= IDLE;
+        }
+        while self.arriving.is_none() && self.next_start(time) <= now {
+            self.start_arrival(time);
+        }
+    }
+
+    fn start_arrival(&mut self, time: &Timeline) {
+        let start = self.next_start(time);
+        let Some((_, byte)) = self.line.pop_front() else {
+            return;
+        };
+        if !self.on(RECEIVER) {
+            self.counters.lost += 1;
+            return;
+        }
+        self.idle_at = NEVER;
+        let ends = start + self.character_cycles();
+        self.line_free = ends;
+        self.arriving = Some(Shift { byte, ends });
+    }
+
+    fn receive(&mut self, shift: Shift) {
+        if !self.on(RECEIVER) {
+            self.counters.lost += 1;
+            return;
+        }
+        self.idle_at = shift.ends + self.character_cycles();
+        if self.sr & RECEIVED != 0 {
+            self.sr |= OVERRUN;
+            self.counters.overruns += 1;
+        } else {
+            self.sr |= RECEIVED;
+            self.received = shift.byte;
+            self.counters.received += 1;
+        }
+    }
+
+    /// Lets DMA read and write DR as far as it can, and feeds the transmitter's shift register.
+    pub fn serve(&mut self, now: Cycle, memory: &mut Memory, dma: &mut Dma) {
+        if self.sr & RECEIVED != 0 && self.cr3 & CR3_DMA_RECEIVE != 0 {
+            let request = Request::UsartReceive(self.number);
+            if dma.store(memory, request, u32::from(self.received)) {
+                self.data_was_read();
+            }
+        }
+        while self.on(TRANSMITTER) {
+            if self.to_send.is_none() && self.cr3 & CR3_DMA_SEND != 0 {
+                let word = dma.load(memory, Request::UsartSend(self.number));
+                self.to_send = word.map(|word| word as u8);
+            }
+            if self.sending.is_some() {
+                return;
+            }
+            let Some(byte) = self.to_send.take() else {
+                return;
+            };
+            let ends = now + self.character_cycles();
+            self.sending = Some(Shift { byte, ends });
+        }
+    }
+
+    fn data_was_read(&mut self) {
+        self.sr &= !(RECEIVED | self.seen);
+        self.seen = 0;
+    }
+
+    fn status(&self) -> u32 {
+        let empty = if self.to_send.is_none() { EMPTY } else { 0 };
+        self.sr | empty
+    }
+
+    /// Drives the interrupt line.
+    pub fn drive(&self, lines: &mut Lines) {
+        let status = self.status();
+        let by_dma = self.cr3 & (CR3_ERROR_INTERRUPT | CR3_DMA_RECEIVE);
+        let errors = by_dma == CR3_ERROR_INTERRUPT | CR3_DMA_RECEIVE || self.cr1 & RECEIVED != 0;
+        let active = status & self.cr1 & CR1_INTERRUPTS != 0 || errors && status & OVERRUN != 0;
+        lines.drive(
+            interrupts::usart(self.number),
+            active && self.cr1 & ENABLE != 0,
+        );
+    }
+
+    /// Reads a register.
+    pub fn read(&mut self, offset: u32) -> Result<u32, Refusal> {
+        Ok(match offset {
+            SR => {
+                let status = self.status();
+                self.seen = status & CLEARED_BY_SEQUENCE;
+                status
+            }
+            DR => {
+                self.data_was_read();
+                u32::from(self.received)
+            }
+            BRR => self.brr,
+            CR1 => self.cr1,
+            CR2 => self.cr2,
+            CR3 => self.cr3,
+            GTPR => self.gtpr,
+            _ => return Err(self.unknown(offset)),
+        })
+    }
+
+    /// Writes a register; [`serve`](Self::serve) afterwards.
+    pub fn write(&mut self, offset: u32, value: u32) -> Result<(), Refusal> {
+        let value = value & 0xffff;
+        match offset {
+            // RXNE and TC are cleared by writing zeros, the others by sequences.
+            SR => self.sr &= value | !(RECEIVED | COMPLETE),
+            DR => {
+                self.sr &= !COMPLETE;
+                self.to_send = Some(value as u8);
+            }
+            BRR => self.brr = value,
+            CR1 if value & CR1_UNMODELLED != 0 => {
+                return self.refuse("break, mute, parity or 9-bit words", value);
+            }
+            CR1 => self.cr1 = value & 0xa1fc,
+            CR2 if value & CR2_UNMODELLED != 0 => {
+                return self.refuse("synchronous or LIN mode", value);
+            }
+            CR2 => self.cr2 = value & 0x376f,
+            CR3 if value & CR3_UNMODELLED != 0 => {
+                return self.refuse("IrDA, half duplex, smartcard or flow control", value);
+            }
+            CR3 => self.cr3 = value & 0x08c1,
+            // Guard time and prescaler serve IrDA and smartcards, which are refused above.
+            GTPR => self.gtpr = value,
+            _ => return Err(self.unknown(offset)),
+        }
+        Ok(())
+    }
+
+    fn unknown(&self, offset: u32) -> Refusal {
+        Refusal::UnmodelledRegister {
+            block: Block::Usart(self.number),
+            address: Request::UsartSend(self.number).data_register() - DR + offset,
+        }
+    }
+
+    fn refuse<T>(&self, what: &'static str, value: u32) -> Result<T, Refusal> {
+        Err(Refusal::UnmodelledMode {
+            block: Block::Usart(self.number),
+            what,
+            value,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;
