@@ -9,7 +9,9 @@
 //! way back. Whatever came from the wire can be NaN or infinite: the accessors refuse it, and the
 //! constructors refuse to send it, because the autopilot checks nothing.
 
+use core::error::Error;
 use core::f32::consts::TAU;
+use core::fmt;
 
 use heapless::Vec;
 
@@ -41,6 +43,14 @@ pub struct WorldPose {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct NotFinite;
+
+impl fmt::Display for NotFinite {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a coordinate is not a finite number")
+    }
+}
+
+impl Error for NotFinite {}
 
 impl WorldPoint {
     /// A place from its coordinates north and east, m.

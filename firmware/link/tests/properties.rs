@@ -108,7 +108,7 @@ proptest! {
         to in -10f32..10.0,
     ) {
         let at = |yaw| WorldPose { x: 0.0, y: 0.0, yaw };
-        let message = InsCorrection::from_world(1, at(from), at(to)).map_err(|_| "finite")?;
+        let message = InsCorrection::from_world(1, at(from), at(to))?;
         let turn = message.psi_to - message.psi_from;
         prop_assert!(turn.abs() <= PI + 1e-5);
         let missing = (f64::from(turn) - f64::from(from - to)) / (2.0 * std::f64::consts::PI);
