@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::state::{ATTITUDE, POSITION, State, VELOCITY};
+use super::state::{ATTITUDE, Covariance, POSITION, State, VELOCITY};
 
 /// No entry of the covariance exceeds this.
 const MAX_COVARIANCE: f32 = 100.0;
@@ -31,7 +31,8 @@ impl State {
     ///
     /// Joseph form, `(I-Kh) P (I-Kh)ᵀ + s² K Kᵀ`, as three rank-one terms. Nothing is gated.
     pub fn scalar_update(&mut self, row: &[Sensitivity], innovation: f32, sd: f32) {
-        let project = |p: &super::state::Covariance| {
+        // P hᵀ from the few columns that h touches.
+        let project = |p: &Covariance| {
             row.iter().fold(SVector::<f32, 9>::zeros(), |sum, h| {
                 sum + p.column(h.state) * h.slope
             })
