@@ -45,6 +45,8 @@ pub struct HomingParameters {
     pub rotation_bound: u8,
     /// Bound of the displacement, units of R. Beyond it the linear model means nothing.
     pub displacement_bound: f32,
+    /// Bound of the residual turn φ, radians; a solution beyond it is none.
+    pub turn_bound: f32,
     /// Below this variance (luma²) of a view's k = 1..=8 there is nothing to see.
     pub least_variance: f32,
 }
@@ -57,6 +59,9 @@ impl HomingParameters {
     /// - Rotations within ±11 steps (±31 degrees): the north estimate is better than that, and far
     ///   views without a bound are off by more than 45 degrees in a quarter of all cases.
     /// - 0.3 R: the step that Stürzl & Mallot's linear model bears.
+    /// - 0.5 rad: where the views match, φ is below 0.2, and e^{ikφ} is no longer linear in φ even for
+    ///   small k. A turn, other than a displacement, goes into the pose in full; better none than a
+    ///   wild one.
     /// - 1 luma²: a standard deviation of one count; a dark or uniform frame has less, a textured
     ///   room some hundreds.
     pub const DEFAULT: Self = Self {
@@ -64,6 +69,7 @@ impl HomingParameters {
         iterations: 1,
         rotation_bound: 11,
         displacement_bound: 0.3,
+        turn_bound: 0.5,
         least_variance: 1.0,
     };
 }
@@ -97,7 +103,8 @@ pub enum NoVectorReason {
     NotFinite,
     /// A view has next to no contrast: darkness, glare, uniform walls all round.
     NoContrast,
-    /// The views leave a direction undetermined, as between the uniform walls of a corridor.
+    /// The views leave a direction undetermined, as between the uniform walls of a corridor, or match
+    /// so badly that the linear model means nothing.
     IllConditioned,
 }
 
@@ -105,8 +112,8 @@ pub enum NoVectorReason {
 ///
 /// # Errors
 ///
-/// [`NoVectorReason`] where the views do not determine one. A vector is finite and bounded by
-/// [`HomingParameters::displacement_bound`].
+/// [`NoVectorReason`] where the views do not determine one. A vector is finite; its displacement is
+/// clipped to [`HomingParameters::displacement_bound`].
 pub fn home(
     current: &Spectrum,
     snapshot: &Snapshot,
@@ -151,6 +158,9 @@ pub fn home(
         rotation,
         difference: difference.unwrap_or_default(),
     };
+    if (vector.rotation - coarse).abs() > parameters.turn_bound {
+        return Err(NoVectorReason::IllConditioned);
+    }
     let finite = vector.displacement.norm().is_finite() && vector.rotation.is_finite();
     if finite && vector.difference.is_finite() {
         Ok(vector)

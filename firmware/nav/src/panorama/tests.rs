@@ -1,1 +1,146 @@
+extern crate std;
 
+use core::f32::consts::{FRAC_PI_2, PI};
+use std::boxed::Box;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::horizon::BEARING_STEP_RAD;
+use crate::spectrum::Spectrum;
+
+/// A frame of a world whose luma depends on the bearing alone, seen by a drone of this heading.
+fn frame(lens: &LensCalibration, heading: f32, luma: impl Fn(f32) -> f32) -> Box<Frame> {
+    let mut frame = Box::new([0xEE; FRAME_BYTES]);
+    for row in 0..FRAME_HEIGHT {
+        for column in 0..FRAME_WIDTH {
+            let x = column as f32 + 0.5 - lens.centre_px.0;
+            let y = row as f32 + 0.5 - lens.centre_px.1;
+            let turned = libm::atan2f(y, x) - lens.zero_bearing_rad;
+            let bearing = match lens.direction {
+                BearingDirection::Clockwise => turned,
+                BearingDirection::CounterClockwise => -turned,
+            };
+            frame[2 * (row * FRAME_WIDTH + column) + 1] = luma(bearing + heading) as u8;
+        }
+    }
+    frame
+}
+
+fn lenses() -> [LensCalibration; 2] {
+    let other = LensCalibration {
+        centre_px: (61.0, 49.5),
+        zero_bearing_rad: 0.7,
+        direction: BearingDirection::CounterClockwise,
+        inner_is_up: false,
+        ..LensCalibration::DEFAULT
+    };
+    [LensCalibration::DEFAULT, other]
+}
+
+fn two_waves(bearing: f32) -> f32 {
+    100.0 + 40.0 * libm::cosf(bearing - 0.7) + 20.0 * libm::sinf(3.0 * bearing)
+}
+
+#[test]
+fn the_horizon_shows_what_the_world_is_at_each_bearing() {
+    for lens in lenses() {
+        let map = PanoramaMap::new(&lens).unwrap();
+        for heading in [0.0, 1.0, -2.5, 3.0, 40.0] {
+            let horizon = map.horizon(&frame(&lens, heading, two_waves), heading);
+            for (n, value) in horizon.luma().iter().enumerate() {
+                let bearing = n as f32 * BEARING_STEP_RAD + horizon.residual_rad();
+                // Half a pixel at radius 18 is 1.6 degrees; the mean over the radius is better.
+                assert!((value - two_waves(bearing)).abs() < 3.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_spectrum_does_not_depend_on_the_heading() {
+    let lens = LensCalibration::DEFAULT;
+    let map = PanoramaMap::new(&lens).unwrap();
+    let view = |heading| Spectrum::of(&map.horizon(&frame(&lens, heading, two_waves), heading));
+    let north = view(0.0);
+    for heading in [0.01, 0.5, FRAC_PI_2, PI, -3.0] {
+        let turned = view(heading);
+        for (a, b) in north.coefficients().iter().zip(turned.coefficients()) {
+            assert!((a - b).l1_norm() < 1.0);
+        }
+    }
+}
+
+#[test]
+fn the_rest_of_the_heading_turns_the_spectrum_exactly() {
+    let lens = LensCalibration::DEFAULT;
+    let map = PanoramaMap::new(&lens).unwrap();
+    let frame = frame(&lens, 0.0, two_waves);
+    let whole = Spectrum::of(&map.horizon(&frame, 17.0 * BEARING_STEP_RAD));
+    let rest = 0.3 * BEARING_STEP_RAD;
+    let both = Spectrum::of(&map.horizon(&frame, 17.0 * BEARING_STEP_RAD + rest));
+    for (a, b) in whole
+        .rotated(-rest)
+        .coefficients()
+        .iter()
+        .zip(both.coefficients())
+    {
+        assert!((a - b).l1_norm() < 1e-3);
+    }
+}
+
+#[test]
+fn the_first_row_looks_up() {
+    for lens in lenses() {
+        let map = PanoramaMap::new(&lens).unwrap();
+        let mut frame = Box::new([0; FRAME_BYTES]);
+        for (index, byte) in frame.iter_mut().enumerate() {
+            let x = (index / 2 % FRAME_WIDTH) as f32 + 0.5 - lens.centre_px.0;
+            let y = (index / 2 / FRAME_WIDTH) as f32 + 0.5 - lens.centre_px.1;
+            *byte = libm::hypotf(x, y) as u8;
+        }
+        let image = map.unwrap(&frame);
+        let (first, last) = (image[0][0], image[RADII - 1][0]);
+        assert_eq!(first < last, lens.inner_is_up);
+    }
+}
+
+#[test]
+fn a_heading_that_is_not_finite_does_no_harm() {
+    let map = PanoramaMap::new(&LensCalibration::DEFAULT).unwrap();
+    for heading in [f32::NAN, f32::INFINITY, f32::MAX, f32::MIN] {
+        let horizon = map.horizon(&[7; FRAME_BYTES], heading);
+        assert_eq!(horizon.mean(), 7.0);
+    }
+}
+
+proptest! {
+    #[test]
+    fn every_sample_of_a_lens_that_fits_is_luma_inside_the_frame(
+        centre in (0.0_f32..128.0, 0.0_f32..96.0),
+        inner in 0.1_f32..64.0,
+        span in 0.1_f32..64.0,
+        zero in -10.0_f32..10.0,
+        clockwise: bool,
+        inner_is_up: bool,
+    ) {
+        let lens = LensCalibration {
+            centre_px: centre,
+            inner_radius_px: inner,
+            outer_radius_px: inner + span,
+            horizon_radius_px: inner + 0.5 * span,
+            zero_bearing_rad: zero,
+            direction: if clockwise {
+                BearingDirection::Clockwise
+            } else {
+                BearingDirection::CounterClockwise
+            },
+            inner_is_up,
+        };
+        if let Ok(map) = PanoramaMap::new(&lens) {
+            for &index in map.luma_index.iter().flatten() {
+                prop_assert!(index % 2 == 1 && usize::from(index) < FRAME_BYTES);
+            }
+        }
+    }
+}

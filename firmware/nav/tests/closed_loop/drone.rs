@@ -70,7 +70,7 @@ impl Drone {
 
     /// Flies one period towards the target of the period before, then takes the new one.
     pub fn fly(&mut self, target: Option<Point2<f32>>) {
-        if self.now_ms / PERIOD_MS % SCALE_PERIODS == 0 {
+        if (self.now_ms / PERIOD_MS).is_multiple_of(SCALE_PERIODS) {
             self.scale = 1.0 + SCALE_ERROR * self.random.normal();
         }
         for _ in 0..SUBSTEPS {
