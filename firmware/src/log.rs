@@ -18,6 +18,11 @@ pub fn boot() {
     );
 }
 
+/// Once after boot: whether the pilot goes on where the watchdog stopped it.
+pub fn memory(kept: bool) {
+    defmt::info!("memory kept {=bool}", kept);
+}
+
 /// Once per frame: its number since boot, what it cost in core cycles (interrupts included), the
 /// mean luma of its horizon (0 to 255), and the exposure that was asked for last.
 pub fn frame(number: u32, cycles: u32, luma: f32, exposure: pilot::Exposure) {

@@ -21,6 +21,7 @@ mod counters;
 mod executors;
 mod link_port;
 mod log;
+mod retained;
 mod sensor_power;
 mod tasks;
 mod wires;
@@ -31,9 +32,7 @@ use defmt_rtt as _;
 use embassy_executor::Spawner;
 use panic_probe as _;
 use pilot::{Parameters, Pilot};
-use static_cell::StaticCell;
-
-static PILOT: StaticCell<Pilot> = StaticCell::new();
+use retained::Retained;
 
 /// Sets up the board and starts the tasks. What can fail here fails on every boot of the same
 /// image: it is a defect of the build, and panics.
@@ -46,8 +45,11 @@ async fn main(spawner: Spawner) {
 
     let board = Board::new(peripherals);
     let (tx, rx) = defmt::unwrap!(link_port::open(board.link));
-    let pilot = match Pilot::new(&Parameters::DEFAULT) {
-        Ok(pilot) => PILOT.init(pilot),
+    let pilot = match Retained::open(|| Pilot::new(&Parameters::DEFAULT)) {
+        Ok((pilot, kept)) => {
+            log::memory(kept);
+            pilot
+        }
         // Which parameter it is, a test on the host says; to print it here costs 20 KB of flash.
         Err(_) => defmt::panic!("the pilot refuses its parameters"),
     };
@@ -57,7 +59,7 @@ async fn main(spawner: Spawner) {
     urgent.spawn(defmt::unwrap!(tasks::link_tx::link_tx(tx)));
     urgent.spawn(defmt::unwrap!(tasks::exposure::exposure(
         board.sensor,
-        pilot.exposure()
+        pilot.pilot().exposure()
     )));
     let capture = Capture::start(board.camera);
     urgent.spawn(defmt::unwrap!(tasks::camera::camera(capture)));

@@ -1,11 +1,12 @@
 //! The pilot's task: frames and messages in, exposures and answers out.
 
-use embassy_time::with_timeout;
+use embassy_time::{Instant, with_timeout};
 use pilot::{FrameReport, Outbox, Pilot};
 
 use crate::capture::{Frame, Integrity};
 use crate::check_in::{self, Member, check_in};
 use crate::counters::COUNTERS;
+use crate::retained::Retained;
 use crate::wires::{EVENTS, EXPOSURE, Event, OUTGOING};
 use crate::{clocks, log};
 
@@ -14,29 +15,29 @@ use crate::{clocks, log};
 /// one has overtaken is skipped and counted; an answer that finds no room on the way to the wire
 /// is dropped and counted.
 #[embassy_executor::task]
-pub async fn vision(pilot: &'static mut Pilot) {
+pub async fn vision(mut pilot: Retained) {
     let mut outbox = Outbox::new();
     loop {
         check_in(Member::Vision);
         match with_timeout(check_in::PERIOD, EVENTS.receive()).await {
-            Ok(Event::Frame(frame)) if frame.is_newest() => see(pilot, frame),
+            Ok(Event::Frame(frame)) if frame.is_newest() => see(&mut pilot, frame),
             Ok(Event::Frame(_)) => COUNTERS.frames_missed.count(),
             Ok(Event::Message { at, message }) => {
-                // The pilot's clock wraps after 49 days.
-                let now_ms = at.as_millis() as u32;
-                answer(pilot, now_ms, &message, &mut outbox);
+                answer(&mut pilot, at, &message, &mut outbox);
             }
             Err(_) => {}
         }
     }
 }
 
-fn see(pilot: &mut Pilot, frame: Frame) {
+fn see(pilot: &mut Retained, frame: Frame) {
     let number = frame.number();
     let ((report, cycles), integrity) = frame.read(|bytes| {
-        let start = clocks::cycles();
-        let report = vision_frame(pilot, bytes);
-        (report, clocks::cycles().wrapping_sub(start))
+        pilot.change(Instant::now(), |pilot, _| {
+            let start = clocks::cycles();
+            let report = vision_frame(pilot, bytes);
+            (report, clocks::cycles().wrapping_sub(start))
+        })
     });
     COUNTERS.frames.count();
     if integrity == Integrity::Torn {
@@ -45,7 +46,7 @@ fn see(pilot: &mut Pilot, frame: Frame) {
     if let Some(wanted) = report.exposure {
         EXPOSURE.signal(wanted);
     }
-    log::frame(number, cycles, report.mean_luma, pilot.exposure());
+    log::frame(number, cycles, report.mean_luma, pilot.pilot().exposure());
 }
 
 /// One frame through the pilot. A function of its own name, never inlined: the rig measures its
@@ -56,10 +57,12 @@ fn vision_frame(pilot: &mut Pilot, frame: &pilot::Frame) -> FrameReport {
     pilot.on_frame(frame)
 }
 
-fn answer(pilot: &mut Pilot, now_ms: u32, message: &link::Message, outbox: &mut Outbox) {
-    let start = clocks::cycles();
-    pilot.on_message(now_ms, message, outbox);
-    let cycles = clocks::cycles().wrapping_sub(start);
+fn answer(pilot: &mut Retained, at: Instant, message: &link::Message, outbox: &mut Outbox) {
+    let cycles = pilot.change(at, |pilot, now_ms| {
+        let start = clocks::cycles();
+        pilot.on_message(now_ms, message, outbox);
+        clocks::cycles().wrapping_sub(start)
+    });
     if matches!(message, link::Message::State(_)) {
         log::state(cycles);
     }
