@@ -119,8 +119,8 @@ pub fn exposure(recording: &Recording, time: &TimeAxis) -> Markup {
         curve(frames, |frame| f64::from(frame.lines)),
     );
     let gain = single_curve(
-        "Gain",
-        "1 = 0 dB",
+        "Analogue gain",
+        "factor",
         curve(frames, |frame| f64::from(frame.gain)),
     );
     html! {

@@ -1,10 +1,41 @@
-//! The key figures of the flight, and below them all figures of the summary.
+//! The flight in a sentence, in key figures, and in all figures of the summary.
 
 use maud::{Markup, html};
 use serde_json::Value;
 
 use super::number::{self, NONE};
 use crate::summary::Summary;
+
+/// The flight in one sentence.
+pub fn headline(summary: &Summary) -> String {
+    let out = number::fixed(summary.outbound_m, 0);
+    let memory = number::grouped(summary.memory_bytes as u64);
+    if summary.completed {
+        let error = number::fixed(summary.home_error_m, 2);
+        format!(
+            "{out} m out and home again, to within {error} m, on {memory} bytes of route memory"
+        )
+    } else {
+        format!("{out} m out, not home again")
+    }
+}
+
+/// What was flown, and with what.
+pub fn subline(summary: &Summary) -> String {
+    let how = if summary.homing == "odometry" {
+        "odometry alone"
+    } else {
+        "snapshots and odometry"
+    };
+    format!(
+        "World {} · route {} · {how} · snapshots {} m apart · seed {} · {}",
+        summary.world,
+        summary.route,
+        number::trimmed(summary.spacing_m, 2),
+        summary.seed,
+        summary.backend,
+    )
+}
 
 /// A figure with its unit, and a line that says what it means.
 struct Figure {
@@ -184,6 +215,10 @@ fn flatten(name: &str, value: &Value, rows: &mut Vec<(String, String)>) {
             }
         }
         Value::String(text) => rows.push((name.to_owned(), text.clone())),
+        Value::Number(number) if number.is_f64() => {
+            let value = number.as_f64().unwrap_or(f64::NAN);
+            rows.push((name.to_owned(), number::trimmed(value, 4)));
+        }
         Value::Null => rows.push((name.to_owned(), NONE.to_owned())),
         other => rows.push((name.to_owned(), other.to_string())),
     }

@@ -100,3 +100,41 @@ fn shortened(text: &str) -> String {
         None => text.to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(level: &str) -> LogLine {
+        LogLine {
+            t: 1.0,
+            source: "firmware",
+            level: level.into(),
+            text: format!("<{level}>"),
+        }
+    }
+
+    #[test]
+    fn a_log_too_long_gives_up_its_finest_levels_and_says_so() {
+        let mut lines = vec![line("error"), line("info")];
+        lines.extend((0..9000).map(|_| line("debug")));
+        let page = log(&lines).into_string();
+        assert!(page.contains("&lt;error&gt;") && page.contains("&lt;info&gt;"));
+        assert!(!page.contains("&lt;debug&gt;"));
+        assert!(page.contains("9\u{202f}000 lines, the finest levels first"));
+    }
+
+    #[test]
+    fn every_level_shown_has_a_box_that_hides_it() {
+        let page = log(&[line("warn"), line("TRACE")]).into_string();
+        assert_eq!(page.matches("type=\"checkbox\"").count(), 2);
+        assert!(page.contains("#log-warn:not(:checked)~ol .warn{display:none}"));
+        assert!(page.contains("<li class=\"trace\">"));
+    }
+
+    #[test]
+    fn long_lines_are_cut_between_characters() {
+        let text = "ü".repeat(MOST_CHARACTERS + 1);
+        assert_eq!(shortened(&text).chars().count(), MOST_CHARACTERS + 1);
+    }
+}

@@ -19,7 +19,7 @@ pub fn page(recording: &Recording, summary: &Summary) -> Markup {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                title { "Flight report: " (map::headline(summary)) }
+                title { "Flight report: " (figures::headline(summary)) }
                 style { (PreEscaped(style::page())) }
             }
             body {
@@ -51,9 +51,9 @@ fn header(summary: &Summary) -> Markup {
     html! {
         header {
             div.eyebrow { "Cataglyphis flight report" }
-            h1 { (map::headline(summary)) }
+            h1 { (figures::headline(summary)) }
             p { span class=(class) { (verdict) } (summary.outcome) }
-            p.note { (map::subline(summary)) }
+            p.note { (figures::subline(summary)) }
             (figures::key_figures(summary))
             (figures::all_figures(summary))
         }

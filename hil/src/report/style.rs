@@ -22,7 +22,7 @@ const fn colour(name: &'static str, light: &'static str, dark: &'static str) -> 
 
 /// Outbound, odometry and homing follow Fig. 6 of van Dijk et al. 2024. They also differ in
 /// lightness, so that they stay apart in grey and for colour-blind eyes.
-const COLOURS: [Colour; 11] = [
+const COLOURS: [Colour; 10] = [
     colour("paper", "#ffffff", "#15171a"),
     colour("ink", "#1d1c1a", "#e9e7e2"),
     colour("muted", "#67635c", "#a09c94"),
@@ -33,7 +33,6 @@ const COLOURS: [Colour; 11] = [
     colour("odometry", "#e3a500", "#ffcf3f"),
     colour("homing", "#1c5fc4", "#5b9dff"),
     colour("uncorrected", "#8b6fa8", "#b79ad6"),
-    colour("wash", "#f6f4ef", "#1d2024"),
 ];
 
 /// The style sheet of `report.html`: light, and dark on screens that ask for it.

@@ -69,14 +69,22 @@ pub fn nice_step(span: f64, most: usize) -> f64 {
         .unwrap_or(10.0 * decade)
 }
 
-/// The whole steps inside a range, and how many decimals tell them apart.
+/// The whole steps inside a range, at most so many and one, and how many decimals tell them apart.
 pub fn ticks(range: Range, most: usize) -> (Vec<f64>, usize) {
     let step = nice_step(range.span(), most);
+    (whole_steps(range, step), decimals(step))
+}
+
+/// The multiples of a step inside a range.
+pub fn whole_steps(range: Range, step: f64) -> Vec<f64> {
     let first = libm::ceil(range.low / step - 1e-6) as i64;
     let last = libm::floor(range.high / step + 1e-6) as i64;
-    let decimals = libm::ceil(-libm::log10(step) - 1e-9).max(0.0) as usize;
-    let values = (first..=last).map(|index| index as f64 * step).collect();
-    (values, decimals)
+    (first..=last).map(|index| index as f64 * step).collect()
+}
+
+/// How many decimals tell the multiples of a nice step apart.
+pub fn decimals(step: f64) -> usize {
+    libm::ceil(-libm::log10(step) - 1e-9).max(0.0) as usize
 }
 
 #[cfg(test)]

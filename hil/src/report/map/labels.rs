@@ -9,6 +9,9 @@ const HALF_DIGIT: f64 = 3.2;
 /// Radius that a dot keeps free.
 const DOT: f64 = 4.0;
 
+/// Radius that another mark keeps free.
+const MARK: f64 = 8.0;
+
 /// Where a number may stand around its dot, best first: rings of eight directions.
 fn offsets(half_width: f64) -> impl Iterator<Item = Point> {
     const DIRECTIONS: [Point; 8] = [
@@ -28,8 +31,9 @@ fn offsets(half_width: f64) -> impl Iterator<Item = Point> {
     })
 }
 
-/// The middle of each number, none for those that find no room.
-pub fn place(dots: &[(Point, u16)]) -> Vec<Option<Point>> {
+/// The middle of each number, none for those that find no room. `marks` are other things not to
+/// be hidden.
+pub fn place(dots: &[(Point, u16)], marks: &[Point]) -> Vec<Option<Point>> {
     let mut placed: Vec<(Point, f64)> = Vec::new();
     dots.iter()
         .map(|(dot, number)| {
@@ -41,6 +45,9 @@ pub fn place(dots: &[(Point, u16)]) -> Vec<Option<Point>> {
                 let hides_dot = dots
                     .iter()
                     .any(|(other, _)| overlap(*spot, *other, half_width + DOT, HALF_HEIGHT + DOT));
+                let hides_mark = marks
+                    .iter()
+                    .any(|mark| overlap(*spot, *mark, half_width + MARK, HALF_HEIGHT + MARK));
                 let hides_number = placed.iter().any(|(other, other_width)| {
                     overlap(
                         *spot,
@@ -49,7 +56,7 @@ pub fn place(dots: &[(Point, u16)]) -> Vec<Option<Point>> {
                         2.0 * HALF_HEIGHT + 1.0,
                     )
                 });
-                !hides_dot && !hides_number
+                !hides_dot && !hides_mark && !hides_number
             };
             let spot = offsets(half_width)
                 .map(|[x, y]| [dot[0] + x, dot[1] + y])
@@ -71,7 +78,7 @@ mod tests {
     #[test]
     fn numbers_of_dots_close_together_do_not_overlap() {
         let dots: Vec<(Point, u16)> = (0..6).map(|i| ([f64::from(i) * 3.0, 0.0], i)).collect();
-        let spots: Vec<Point> = place(&dots).into_iter().flatten().collect();
+        let spots: Vec<Point> = place(&dots, &[]).into_iter().flatten().collect();
         assert!(spots.len() >= 4);
         for (index, a) in spots.iter().enumerate() {
             for b in &spots[index + 1..] {
@@ -82,6 +89,6 @@ mod tests {
 
     #[test]
     fn a_dot_that_is_nowhere_gets_no_number() {
-        assert_eq!(place(&[([f64::NAN, 0.0], 0)]), [None]);
+        assert_eq!(place(&[([f64::NAN, 0.0], 0)], &[]), [None]);
     }
 }

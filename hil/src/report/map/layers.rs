@@ -8,7 +8,8 @@ use super::view::View;
 use super::{labels, legend};
 use crate::record::{Phase, PlanarPose, Recording, SnapshotMark, TrackPoint};
 use crate::report::svg::{self, Point, px};
-use crate::report::{number, phase, ticks};
+use crate::report::ticks::{self, Range};
+use crate::report::{number, phase};
 
 /// Points of a path nearer than this are one, user units.
 const PATH_STEP: f64 = 0.7;
@@ -16,6 +17,8 @@ const PATH_STEP: f64 = 0.7;
 const SHORTEST_ARROW: f64 = 2.5;
 /// Length of an arrow's head, user units.
 const ARROW_HEAD: f64 = 3.4;
+/// From this extent on, metres, the grid is never finer than a metre.
+const METRE_GRID_M: f64 = 3.0;
 /// Points of the track that the read-out knows.
 const COARSE_POINTS: usize = 1200;
 
@@ -46,22 +49,20 @@ fn grid(view: &View) -> Markup {
     let frame = view.frame;
     let (bottom, right) = (frame.top + frame.height, frame.left + frame.width);
     let most = (frame.width.max(frame.height) / 46.0) as usize;
-    let step = ticks::nice_step(view.west.span().max(view.north.span()), most);
-    let lines = |low: f64, high: f64| {
-        let first = libm::ceil(low / step) as i64;
-        let last = libm::floor(high / step) as i64;
-        (first..=last)
-            .map(|index| index as f64 * step)
-            .collect::<Vec<f64>>()
+    let span = view.west.span().max(view.north.span());
+    let step = ticks::nice_step(span, most).max(if span > METRE_GRID_M { 1.0 } else { 0.0 });
+    let east = Range {
+        low: -view.west.high,
+        high: -view.west.low,
     };
-    let decimals = usize::from(step < 1.0);
+    let decimals = ticks::decimals(step);
     html! {
-        @for north in lines(view.north.low, view.north.high) {
+        @for north in ticks::whole_steps(view.north, step) {
             @let y = view.place([north, 0.0])[1];
             path class="hair s-grid" d=(format!("M{} {}H{}", px(frame.left), px(y), px(right))) {}
             text class="f-muted small end" x=(px(frame.left - 7.0)) y=(px(y + 4.0)) { (number::fixed(north, decimals)) }
         }
-        @for east in lines(-view.west.high, -view.west.low) {
+        @for east in ticks::whole_steps(east, step) {
             @let x = view.place([0.0, -east])[0];
             path class="hair s-grid" d=(format!("M{} {}V{}", px(x), px(frame.top), px(bottom))) {}
             text class="f-muted small middle" x=(px(x)) y=(px(bottom + 17.0)) { (number::fixed(east, decimals)) }
@@ -80,6 +81,9 @@ pub fn flight(recording: &Recording, view: &View, most_arrows: usize) -> Markup 
     let (out, back): (Vec<_>, Vec<_>) = pieces
         .into_iter()
         .partition(|(phase, _)| matches!(phase, Phase::Ground | Phase::Outbound));
+    let home = view.place([0.0, 0.0]);
+    let end = track.last().map(|last| at(view, last.truth));
+    let marks: Vec<Point> = end.into_iter().chain([home]).collect();
     html! {
         g clip-path="url(#map-frame)" {
             path class="line uncorrected s-uncorrected" d=(path(view, track, |point| point.uncorrected)) {}
@@ -87,7 +91,6 @@ pub fn flight(recording: &Recording, view: &View, most_arrows: usize) -> Markup 
             @for (phase, piece) in out {
                 path class=(phase::line_class(phase)) d=(path(view, piece, |point| point.truth)) {}
             }
-            path class="arrow s-homing" d=(arrows(recording, view, most_arrows)) {}
             // Paper-coloured below the way back, so that it stands out where it covers the way out.
             @for (_, piece) in &back {
                 path class="line casing s-paper" d=(path(view, piece, |point| point.truth)) {}
@@ -95,9 +98,11 @@ pub fn flight(recording: &Recording, view: &View, most_arrows: usize) -> Markup 
             @for (phase, piece) in back {
                 path class=(phase::line_class(phase)) d=(path(view, piece, |point| point.truth)) {}
             }
+            path class="arrow s-ink" d=(arrows(recording, view, most_arrows)) {}
             (snapshots(&recording.snapshots, view))
-            @if let Some(last) = track.last() { (legend::end_mark(at(view, last.truth))) }
-            (legend::home_mark(view.place([0.0, 0.0])))
+            (legend::home_mark(home))
+            @if let Some(end) = end { (legend::end_mark(end)) }
+            (numbers(&recording.snapshots, view, &marks))
         }
     }
 }
@@ -163,20 +168,24 @@ fn arrow(from: Point, shaft: Point) -> Option<String> {
     Some(svg::polyline([from, tip]) + &svg::polyline([barb(1.0), tip, barb(-1.0)]))
 }
 
-/// Numbered dots where the snapshots were taken.
+/// Dots where the snapshots were taken.
 fn snapshots(marks: &[SnapshotMark], view: &View) -> Markup {
-    let dots: Vec<(Point, u16)> = marks
-        .iter()
-        .map(|mark| (at(view, mark.truth), mark.index))
-        .collect();
-    let spots = labels::place(&dots);
+    let dots = marks.iter().map(|mark| (mark, at(view, mark.truth)));
     html! {
-        @for (mark, (dot, _)) in marks.iter().zip(&dots).filter(|(_, (dot, _))| svg::is_finite(*dot)) {
+        @for (mark, dot) in dots.filter(|(_, dot)| svg::is_finite(*dot)) {
             circle class="dot f-paper s-ink" cx=(px(dot[0])) cy=(px(dot[1])) r="3.2" {
                 title { (description(mark)) }
             }
         }
-        @for ((_, index), spot) in dots.iter().zip(spots) {
+    }
+}
+
+/// Their numbers, where there is room.
+fn numbers(snapshots: &[SnapshotMark], view: &View, marks: &[Point]) -> Markup {
+    let dot = |mark: &SnapshotMark| (at(view, mark.truth), mark.index);
+    let dots: Vec<(Point, u16)> = snapshots.iter().map(dot).collect();
+    html! {
+        @for ((_, index), spot) in dots.iter().zip(labels::place(&dots, marks)) {
             @if let Some([x, y]) = spot {
                 text class="f-ink s-paper halo tiny middle" x=(px(x)) y=(px(y + 3.4)) { (index) }
             }

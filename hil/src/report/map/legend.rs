@@ -35,7 +35,7 @@ pub fn legend(left: f64, top: f64) -> Markup {
             phase::label(Phase::Homing),
         ),
         (
-            html! { path class="arrow s-homing" d="M3 0h26m-5 -3.5l5 3.5l-5 3.5" {} },
+            html! { path class="arrow s-ink" d="M3 0h26m-5 -3.5l5 3.5l-5 3.5" {} },
             "homing vectors",
         ),
         (dot(), "snapshots, numbered"),
@@ -83,20 +83,17 @@ pub fn end_mark([x, y]: [f64; 2]) -> Markup {
     html! { path class="f-ink s-paper" stroke-width="1.2" d=(data) {} }
 }
 
-/// A bar of a round length, and an arrow to the north, in the lower corners of the map.
+/// A bar of a round length and an arrow to the north, below the map where they hide nothing.
 pub fn scale_and_north(view: &View) -> Markup {
-    let metres = ticks::nice_step(view.west.span(), 6);
+    let metres = ticks::nice_step(view.west.span(), 8);
     let length = metres * view.scale;
     let frame = view.frame;
-    let (x, y) = (frame.left + 16.0, frame.top + frame.height - 16.0);
-    let text = format!("{} m", number::fixed(metres, usize::from(metres < 1.0)));
-    let north = frame.left + frame.width - 22.0;
+    let right = frame.left + frame.width;
+    let y = frame.top + frame.height + 35.0;
     html! {
-        rect class="f-paper" opacity=".85" x=(px(x - 8.0)) y=(px(y - 22.0)) width=(px(length + 16.0)) height="30" {}
-        rect class="f-paper" opacity=".85" x=(px(north - 11.0)) y=(px(y - 26.0)) width="22" height="36" {}
-        path class="line s-ink" stroke-width="1.6" d=(format!("M{} {}v5h{}v-5", px(x), px(y - 5.0), px(length))) {}
-        text class="f-ink s-paper halo middle" x=(px(x + length / 2.0)) y=(px(y - 6.0)) { (text) }
-        path class="f-ink s-paper" d=(format!("M{} {}l6 16l-6 -4l-6 4z", px(north), px(y - 22.0))) {}
-        text class="f-ink s-paper halo middle" x=(px(north)) y=(px(y + 6.0)) { "N" }
+        path class="line s-ink" stroke-width="1.6" d=(format!("M{} {}v5h{}v-5", px(right - length), px(y - 5.0), px(length))) {}
+        text class="f-ink end" x=(px(right - length - 8.0)) y=(px(y + 1.0)) { (number::trimmed(metres, 2)) " m" }
+        path class="f-ink" d=(format!("M{} {}l5 14l-5 -3.5l-5 3.5z", px(frame.left + 6.0), px(y - 13.0))) {}
+        text class="f-ink" x=(px(frame.left + 17.0)) y=(px(y + 1.0)) { "N" }
     }
 }

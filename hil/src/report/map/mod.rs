@@ -9,7 +9,7 @@ use maud::{Markup, html};
 
 use self::view::View;
 use super::svg::px;
-use super::{number, style};
+use super::{figures, number, style};
 use crate::record::Recording;
 use crate::summary::Summary;
 
@@ -57,12 +57,12 @@ pub fn picture(recording: &Recording, summary: &Summary) -> Markup {
     let (width, height) = (PICTURE_WIDTH + 2.0 * MARGIN, height + 2.0 * MARGIN);
     html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("{0} {0} {1} {2}", px(-MARGIN), px(width), px(height)))
-            width=(px(width)) height=(px(height)) role="img" aria-label=(headline(summary)) {
-            title { (headline(summary)) }
+            width=(px(width)) height=(px(height)) role="img" aria-label=(figures::headline(summary)) {
+            title { (figures::headline(summary)) }
             style { (maud::PreEscaped(style::figure())) }
             rect class="f-paper" x=(px(-MARGIN)) y=(px(-MARGIN)) width=(px(width)) height=(px(height)) {}
-            text class="f-ink title" x="0" y="16" { (headline(summary)) }
-            text class="f-muted subtitle" x="0" y="38" { (subline(summary)) }
+            text class="f-ink title" x="0" y="16" { (figures::headline(summary)) }
+            text class="f-muted subtitle" x="0" y="38" { (figures::subline(summary)) }
             (scene(recording, &view))
             (key_figures(summary, PICTURE_WIDTH - LEGEND, TITLE + legend::HEIGHT + 14.0))
         }
@@ -80,37 +80,6 @@ fn scene(recording: &Recording, view: &View) -> Markup {
         (legend::scale_and_north(view))
         (legend::legend(view.frame.left + view.frame.width + GAP, view.frame.top))
     }
-}
-
-/// The flight in one sentence.
-pub fn headline(summary: &Summary) -> String {
-    let out = number::fixed(summary.outbound_m, 0);
-    let memory = number::grouped(summary.memory_bytes as u64);
-    if summary.completed {
-        let error = number::fixed(summary.home_error_m, 2);
-        format!(
-            "{out} m out and home again, to within {error} m, on {memory} bytes of route memory"
-        )
-    } else {
-        format!("{out} m out, not home again")
-    }
-}
-
-/// What was flown, and with what.
-pub fn subline(summary: &Summary) -> String {
-    let how = if summary.homing == "odometry" {
-        "odometry alone"
-    } else {
-        "snapshots and odometry"
-    };
-    format!(
-        "World {} · route {} · {how} · snapshots {} m apart · seed {} · {}",
-        summary.world,
-        summary.route,
-        number::trimmed(summary.spacing_m, 2),
-        summary.seed,
-        summary.backend,
-    )
 }
 
 /// Four figures below the legend of the picture.

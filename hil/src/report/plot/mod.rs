@@ -17,6 +17,14 @@ const RIGHT: f64 = 14.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 44.0;
 
+/// Classes of a line of reference.
+const LEVEL_CLASS: &str = "level s-muted";
+
+/// Room in the key around a label, and for each of its characters. Text cannot be measured here:
+/// this is enough for the widest of the usual fonts.
+const KEY_GAP: f64 = 52.0;
+const KEY_CHARACTER: f64 = 7.1;
+
 /// Slices of the time axis whose extremes are drawn: one for about two pixels.
 const BUCKETS: usize = 480;
 
@@ -32,7 +40,7 @@ pub struct Series {
 
 /// A horizontal line of reference.
 pub struct Level {
-    /// Written on the line.
+    /// What it is, for the key.
     pub label: String,
     /// Where.
     pub value: f64,
@@ -110,34 +118,40 @@ impl Plot {
         Some(range.rounded(step))
     }
 
-    /// What the lines and marks mean, from the right edge leftwards.
-    fn key(&self) -> Markup {
-        let line = |series: &Series| {
-            (
-                series.label,
-                html! { path class=(series.class) d="M-25 -4h25" {} },
-            )
-        };
-        let mark = |events: &Events| {
-            (
-                events.label,
-                html! { path class="f-homing" d="M-12 -1l-4 -7h8z" {} },
-            )
-        };
-        let entries = self
+    /// Every kind of line and mark with its meaning.
+    fn marks(&self) -> Vec<(&str, Markup)> {
+        let line = |class: &str| html! { path class=(class) d="M-25 -4h25" {} };
+        let triangle = html! { path class="f-homing" d="M-12 -1l-4 -7h8z" {} };
+        let series = self
             .series
             .iter()
-            .map(line)
-            .chain(self.events.iter().map(mark));
+            .map(|series| (series.label, line(series.class)));
+        let levels = self
+            .levels
+            .iter()
+            .map(|level| (level.label.as_str(), line(LEVEL_CLASS)));
+        let events = self
+            .events
+            .iter()
+            .map(|events| (events.label, triangle.clone()));
+        let all = series.chain(levels).chain(events);
+        all.filter(|(label, _)| !label.is_empty()).collect()
+    }
+
+    /// What the marks mean, from the right edge leftwards.
+    fn key(&self) -> Markup {
         let mut right = WIDTH - RIGHT;
+        let placed = self.marks().into_iter().map(|(label, sample)| {
+            let place = right;
+            right -= KEY_GAP + KEY_CHARACTER * label.chars().count() as f64;
+            (place, label, sample)
+        });
         html! {
-            @for (label, sample) in entries.filter(|(label, _)| !label.is_empty()) {
+            @for (right, label, sample) in placed {
                 g transform=(format!("translate({} 15)", px(right))) {
                     (sample)
                     text class="f-muted small end" x="-31" { (label) }
                 }
-                // Text cannot be measured here: room for the widest of the usual fonts.
-                @let () = right -= 52.0 + 7.1 * label.chars().count() as f64;
             }
         }
     }
@@ -151,8 +165,7 @@ impl Level {
     fn render(&self, scales: &Scales) -> Markup {
         let [y, right] = [scales.y(self.value), WIDTH - RIGHT];
         html! {
-            path class="level s-muted" d=(format!("M{} {}H{}", px(LEFT), px(y), px(right))) {}
-            text class="f-muted s-paper small halo end" x=(px(right - 4.0)) y=(px(y - 5.0)) { (self.label) }
+            path class=(LEVEL_CLASS) d=(format!("M{} {}H{}", px(LEFT), px(y), px(right))) {}
         }
     }
 }

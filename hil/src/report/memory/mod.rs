@@ -1,45 +1,17 @@
 //! The route memory byte by byte: snapshots, odometry counts, odometry vectors.
 
+mod totals;
+
 use maud::{Markup, html};
 
 use super::svg::px;
 use super::{horizon, number};
 use crate::record::{OdometryMark, Recording, SnapshotMark};
 
-/// Bytes of an odometry count (uint16).
-const COUNT_BYTES: usize = 2;
-/// Bytes of an odometry vector (two int8).
-const VECTOR_BYTES: usize = 2;
 /// Metres of one count of an odometry vector (van Dijk et al. 2024, Fig. 8).
 const METRES_PER_COUNT: f64 = 0.1;
 /// Size of the bars above the bytes: user units per byte, and in height.
 const BAR: [f64; 2] = [10.0, 30.0];
-
-/// Bytes by their use.
-struct Shares {
-    snapshots: usize,
-    counts: usize,
-    vectors: usize,
-}
-
-impl Shares {
-    fn of(recording: &Recording) -> Self {
-        let snapshots = &recording.snapshots;
-        Self {
-            snapshots: snapshots.iter().map(|mark| mark.coefficients.len()).sum(),
-            counts: COUNT_BYTES * snapshots.len(),
-            vectors: VECTOR_BYTES * recording.odometry.len(),
-        }
-    }
-
-    fn without_counts(&self) -> usize {
-        self.snapshots + self.vectors
-    }
-
-    fn with_counts(&self) -> usize {
-        self.without_counts() + self.counts
-    }
-}
 
 /// What all rows have in common, so that they can be compared.
 #[derive(Clone, Copy)]
@@ -66,7 +38,7 @@ pub fn memory(recording: &Recording, outbound_m: f64) -> Markup {
         .max()
         .unwrap_or(0);
     html! {
-        (totals(recording, outbound_m))
+        (totals::totals(recording, outbound_m))
         p.note {
             "Each snapshot is a row: its coefficients as bars, as bytes, and as signed numbers. The remembered horizon is drawn from them alone "
             "(one count of frequency k is 0.60 · 0.826" sup { "k−1" } " luma; the mean is not stored). "
@@ -88,50 +60,6 @@ pub fn memory(recording: &Recording, outbound_m: f64) -> Markup {
                 (row_without_snapshot(&vectors(&recording.odometry, 0, usize::MAX), coefficients))
             }
         } }
-    }
-}
-
-fn totals(recording: &Recording, outbound_m: f64) -> Markup {
-    let shares = Shares::of(recording);
-    let per_metre = |bytes: usize| number::fixed(bytes as f64 / outbound_m, 1);
-    let bytes = |bytes: usize| number::grouped(bytes as u64);
-    let rows = [
-        (
-            "b-snapshot",
-            shares.snapshots,
-            "snapshots",
-            recording.snapshots.len(),
-        ),
-        (
-            "b-count",
-            shares.counts,
-            "odometry counts",
-            recording.snapshots.len(),
-        ),
-        (
-            "b-vector",
-            shares.vectors,
-            "odometry vectors",
-            recording.odometry.len(),
-        ),
-    ];
-    html! {
-        p {
-            b { (bytes(shares.with_counts())) " bytes" }
-            " with the odometry counts, " (per_metre(shares.with_counts())) " for each metre of the way out; "
-            b { (bytes(shares.without_counts())) " bytes" }
-            " without, " (per_metre(shares.without_counts())) " per metre."
-        }
-        div.shares aria-hidden="true" {
-            @for (class, share, _, _) in rows {
-                @if share > 0 { span class=(class) style=(format!("flex:{share}")) {} }
-            }
-        }
-        ul.key {
-            @for (class, share, label, count) in rows {
-                li { i class=(class) {} (count) " " (label) ": " (bytes(share)) " B" }
-            }
-        }
     }
 }
 
@@ -260,4 +188,29 @@ fn hops(vectors: &[OdometryMark]) -> Markup {
 
 fn metres(counts: i8) -> String {
     number::fixed(f64::from(counts) * METRES_PER_COUNT, 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_vectors_back_to_a_snapshot_are_those_stored_after_it_newest_first() {
+        let mark = |index| OdometryMark {
+            index,
+            counts: [0, 0],
+        };
+        let odometry: Vec<OdometryMark> = (0..5).rev().map(mark).collect();
+        let back: Vec<u16> = vectors(&odometry, 2, 4)
+            .iter()
+            .map(|mark| mark.index)
+            .collect();
+        assert_eq!(back, [3, 2]);
+    }
+
+    #[test]
+    fn bars_of_positive_counts_rise_and_of_negative_counts_fall() {
+        let svg = bars(&[64, -128], 128.0).into_string();
+        assert!(svg.contains("v-7.5h") && svg.contains("v15h"));
+    }
 }
