@@ -139,7 +139,9 @@ impl ExposureController {
         // At or below black nothing is measured; one count above it bounds the quotient.
         let measured = (mean_luma - p.black_level).max(1.0);
         let wanted = (p.set_point - p.black_level).max(1.0);
-        libm::powf(wanted / measured, p.damping / p.gamma).clamp(1.0 / p.ratio_limit, p.ratio_limit)
+        let ratio = libm::powf(wanted / measured, p.damping / p.gamma);
+        // Not `clamp`, which panics where the limits are the wrong way round.
+        ratio.max(1.0 / p.ratio_limit).min(p.ratio_limit)
     }
 
     /// Shutter first, because gain amplifies noise as well; gain for what the longest shutter lacks.
@@ -147,7 +149,7 @@ impl ExposureController {
         let p = &self.parameters;
         let shortest = f32::from(p.shutter_min_lines);
         let longest = f32::from(p.shutter_max_lines);
-        let lines = libm::roundf(product.clamp(shortest, longest));
+        let lines = libm::roundf(product.max(shortest).min(longest));
         Exposure {
             shutter_lines: lines as u16,
             gain: if product > longest {

@@ -102,9 +102,12 @@ impl Navigator {
         &self.parameters
     }
 
-    /// Sets the way between two snapshots, metres; takes effect with the next recording.
+    /// Changes the way between two snapshots along odometry, metres, from now on. What is not a
+    /// positive number is ignored.
     pub const fn set_snapshot_spacing(&mut self, metres: f32) {
-        self.parameters.snapshot_spacing_m = metres;
+        if metres > 0.0 && metres.is_finite() {
+            self.parameters.snapshot_spacing_m = metres;
+        }
     }
 
     /// One step for each STATE message (10 Hz): the time (wrapping milliseconds), the autopilot's

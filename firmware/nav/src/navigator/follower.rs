@@ -1,8 +1,10 @@
 //! The way back: popping the stacks, leg by leg.
 
+mod arrival;
+
 use nalgebra::Point2;
 
-use super::homing_run::{Ending, HomingRun};
+use super::homing_run::HomingRun;
 use super::map_entry;
 use super::parameters::{Parameters, has_passed};
 use super::realignment::Realigner;
@@ -19,7 +21,7 @@ pub(super) struct Follower {
     phase: Phase,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 enum Phase {
     /// Before the first step.
     Starting,
@@ -55,23 +57,18 @@ impl Follower {
     }
 
     pub(super) fn step(&mut self, context: &mut Context, step: &mut Step) {
-        match &self.phase {
+        match self.phase {
             Phase::Starting => self.start(context, step),
             Phase::Settling {
                 since_ms,
                 correction,
             } => {
-                let settled = has_passed(
-                    *since_ms,
-                    context.now_ms,
-                    context.parameters.settling_time_ms,
-                );
-                if settled {
-                    let at = correction.to.position;
-                    self.go_on(at, context, step);
+                let settling_ms = context.parameters.settling_time_ms;
+                if has_passed(since_ms, context.now_ms, settling_ms) {
+                    self.go_on(correction.to.position, context, step);
                 }
             }
-            _ => {}
+            Phase::Leg | Phase::Homing { .. } | Phase::Holding { .. } => {}
         }
         if matches!(self.phase, Phase::Leg) {
             self.advance(context, step);
@@ -86,7 +83,7 @@ impl Follower {
             self.phase = Phase::Holding { at: here };
         } else if self.stays {
             // It may be far away, and the camera leads; odometry is what is left in the dark.
-            let fallback = recorded_position(context.route).unwrap_or(here);
+            let fallback = arrival::recorded_position(context.route).unwrap_or(here);
             self.start_homing(here, fallback, context, step);
         } else {
             self.start_next(here, context, step);
@@ -170,117 +167,17 @@ impl Follower {
     }
 
     fn set_point(&mut self, context: &mut Context, step: &mut Step) -> SetPoint {
-        let target = match &mut self.phase {
-            Phase::Homing { .. } => return self.home(context, step),
+        let target = match self.phase {
+            Phase::Homing { run, done } => return self.home(run, done, context, step),
             Phase::Settling { correction, .. } => {
-                step.correction = Some(*correction);
+                step.correction = Some(correction);
                 correction.to.position
             }
-            Phase::Holding { at } => *at,
+            Phase::Holding { at } => at,
             Phase::Leg | Phase::Starting => context.route.tip(),
         };
         by_odometry(target, context.pose)
     }
-
-    fn home(&mut self, context: &mut Context, step: &mut Step) -> SetPoint {
-        let Phase::Homing { run, done } = &mut self.phase else {
-            return by_odometry(context.pose.position, context.pose);
-        };
-        let Some(top) = context.route.top_snapshot() else {
-            return by_odometry(run.target(), context.pose);
-        };
-        let snapshot = top.snapshot;
-        let set_point = run.step(
-            context.parameters,
-            &snapshot,
-            context.pose,
-            context.view,
-            step,
-        );
-        if *done {
-            return set_point;
-        }
-        let ending = ending(self.stays, context);
-        let Some(by) = run.arrival(context.parameters, context.now_ms, &ending) else {
-            return set_point;
-        };
-        if !context
-            .realigner
-            .is_ready(context.parameters, context.now_ms)
-        {
-            return set_point;
-        }
-        let run = run.clone();
-        step.report(Event::Arrived { by });
-        self.leave(&run, set_point, context, step)
-    }
-
-    /// Ends homing: realigns the pose if that is possible, and consumes the snapshot.
-    fn leave(
-        &mut self,
-        run: &HomingRun,
-        set_point: SetPoint,
-        context: &mut Context,
-        step: &mut Step,
-    ) -> SetPoint {
-        let recorded = recorded_position(context.route);
-        if !self.stays {
-            context.route.pop_snapshot();
-        }
-        match recorded.filter(|_| run.is_trustworthy(context.parameters)) {
-            Some(position) => {
-                let correction = context.realigner.realign(
-                    context.now_ms,
-                    context.pose,
-                    position,
-                    run.rotation(),
-                );
-                step.report(Event::Realigned {
-                    index: correction.index,
-                });
-                step.correction = Some(correction);
-                self.phase = Phase::Settling {
-                    since_ms: context.now_ms,
-                    correction,
-                };
-                by_odometry(position, context.pose)
-            }
-            None => {
-                self.go_on(run.target(), context, step);
-                set_point
-            }
-        }
-    }
-}
-
-/// When homing at the last snapshot may end.
-fn ending(stays: bool, context: &Context) -> Ending {
-    let parameters = context.parameters;
-    if stays {
-        // It may have begun far away: it takes as long as it takes.
-        Ending {
-            time_limit_ms: None,
-            may_be_early: true,
-        }
-    } else if context.route.snapshots().len() == 1 {
-        // At home precision matters and nothing follows: the drone takes all its time.
-        Ending {
-            time_limit_ms: Some(parameters.final_homing_time_ms),
-            may_be_early: false,
-        }
-    } else {
-        Ending {
-            time_limit_ms: Some(parameters.homing_time_ms),
-            may_be_early: true,
-        }
-    }
-}
-
-/// Where the last snapshot was taken, as far as the vectors tell.
-fn recorded_position(route: &Route) -> Option<Point2<f32>> {
-    route
-        .top_snapshot_position()
-        .filter(|_| route.top_position_is_known())
 }
 
 fn by_odometry(target: Point2<f32>, pose: &Pose) -> SetPoint {

@@ -13,7 +13,7 @@ use crate::spectrum::Spectrum;
 const CAMERA_IS_SILENT: u8 = 5;
 
 /// The state of homing at one snapshot.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct HomingRun {
     started_ms: u32,
     /// The target while there is no vector.

@@ -123,6 +123,18 @@ fn a_visual_sequence_takes_a_snapshot_every_quarter_of_a_metre_and_no_odometry()
 }
 
 #[test]
+fn the_spacing_of_snapshots_can_be_changed_to_any_positive_length() {
+    let mut bench = Bench::new();
+    for nonsense in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        bench.navigator.set_snapshot_spacing(nonsense);
+        assert_eq!(bench.navigator.parameters(), &Parameters::DEFAULT);
+    }
+    bench.navigator.set_snapshot_spacing(1.0);
+    bench.record(0x03, 5.5);
+    assert!((5..=6).contains(&bench.snapshots()));
+}
+
+#[test]
 fn odometry_alone_takes_no_snapshot() {
     let mut bench = Bench::new();
     bench.record(0x02, 3.0);

@@ -37,7 +37,7 @@ pub(super) fn simplify(part: &mut [OdometryVector]) -> usize {
     let mut start = 0;
     while start <= last {
         let end = (start..=last).find(|&v| kept.contains(v)).unwrap_or(last);
-        match farthest(&part[start..=end]) {
+        match part.get(start..=end).and_then(farthest) {
             Some(offset) => kept.insert(start + offset),
             None => start = end + 1,
         }
@@ -87,7 +87,7 @@ fn merge(part: &mut [OdometryVector], kept: &Kept) -> usize {
         sum[1] += i32::from(part[vertex].y);
         if kept.contains(vertex) {
             // A sum of n vectors takes at most n: the writing never overtakes the reading.
-            for (slot, piece) in part[written..=vertex].iter_mut().zip(pieces(sum)) {
+            for (slot, piece) in part.iter_mut().skip(written).zip(pieces(sum)) {
                 *slot = piece;
                 written += 1;
             }

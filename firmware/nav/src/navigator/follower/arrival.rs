@@ -1,0 +1,114 @@
+//! At a snapshot: homing, arriving and realigning.
+
+use nalgebra::Point2;
+
+use super::{Context, Follower, Phase, by_odometry};
+use crate::navigator::homing_run::{Ending, HomingRun};
+use crate::navigator::step::{Event, SetPoint, Step};
+use crate::route::Route;
+
+impl Follower {
+    /// One step of homing.
+    pub(super) fn home(
+        &mut self,
+        mut run: HomingRun,
+        done: bool,
+        context: &mut Context,
+        step: &mut Step,
+    ) -> SetPoint {
+        let Some(top) = context.route.top_snapshot() else {
+            return by_odometry(run.target(), context.pose);
+        };
+        let snapshot = top.snapshot;
+        let set_point = run.step(
+            context.parameters,
+            &snapshot,
+            context.pose,
+            context.view,
+            step,
+        );
+        self.phase = Phase::Homing { run, done };
+        let ending = ending(self.stays, context);
+        match run.arrival(context.parameters, context.now_ms, &ending) {
+            Some(by) if !done && may_realign(context) => {
+                step.report(Event::Arrived { by });
+                self.leave(&run, set_point, context, step)
+            }
+            _ => set_point,
+        }
+    }
+
+    /// Ends homing: realigns the pose if that is possible, and consumes the snapshot.
+    fn leave(
+        &mut self,
+        run: &HomingRun,
+        set_point: SetPoint,
+        context: &mut Context,
+        step: &mut Step,
+    ) -> SetPoint {
+        let recorded = recorded_position(context.route);
+        if !self.stays {
+            context.route.pop_snapshot();
+        }
+        match recorded.filter(|_| run.is_trustworthy(context.parameters)) {
+            Some(position) => {
+                let correction = context.realigner.realign(
+                    context.now_ms,
+                    context.pose,
+                    position,
+                    run.rotation(),
+                );
+                step.report(Event::Realigned {
+                    index: correction.index,
+                });
+                step.correction = Some(correction);
+                self.phase = Phase::Settling {
+                    since_ms: context.now_ms,
+                    correction,
+                };
+                by_odometry(position, context.pose)
+            }
+            None => {
+                self.go_on(run.target(), context, step);
+                set_point
+            }
+        }
+    }
+}
+
+/// When homing at the last snapshot may end.
+fn ending(stays: bool, context: &Context) -> Ending {
+    let parameters = context.parameters;
+    if stays {
+        // It may have begun far away: it takes as long as it takes.
+        Ending {
+            time_limit_ms: None,
+            may_be_early: true,
+        }
+    } else if context.route.snapshots().len() == 1 {
+        // At home precision matters and nothing follows: the drone takes all its time.
+        Ending {
+            time_limit_ms: Some(parameters.final_homing_time_ms),
+            may_be_early: false,
+        }
+    } else {
+        Ending {
+            time_limit_ms: Some(parameters.homing_time_ms),
+            may_be_early: true,
+        }
+    }
+}
+
+/// Whether a realignment now would not follow too soon on the last.
+fn may_realign(context: &Context) -> bool {
+    context
+        .realigner
+        .is_ready(context.parameters, context.now_ms)
+}
+
+/// Where the last snapshot was taken, as far as the vectors tell.
+pub(super) fn recorded_position(route: &Route) -> Option<Point2<f32>> {
+    route
+        .top_snapshot_position()
+        .filter(|_| route.top_position_is_known())
+}
