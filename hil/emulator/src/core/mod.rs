@@ -1,14 +1,46 @@
 //! An ARM Cortex-M4F: ARMv7E-M with the single-precision FPU (ARM DDI0403E, DDI0439).
+//!
+//! Everything the firmware of an STM32F4 can do to its core is here: all of Thumb-2 with the DSP and
+//! floating-point extensions, nested exceptions with lazy stacking, SysTick, the cycle counter, and
+//! the flash accelerator that decides how fast code runs. Faults are not taken as exceptions; they
+//! end the run with a [`Stop`]. Left out: the MPU, privilege, floating-point modes and cumulative
+//! exception flags, and interrupting LDM and division half-way.
 
 mod bus;
 mod calls;
+mod code_cache;
+mod cycles;
+mod decode;
+mod dwt;
+mod exceptions;
+mod execute;
+mod flags;
+mod flash_accelerator;
+mod fpu;
+mod instruction;
+mod nvic;
+mod private_bus;
+mod registers;
 mod stop;
+mod system_control;
+mod systick;
 
 pub use bus::{Bus, BusFault, Cycle, Width};
 pub use calls::Call;
 pub use stop::{Cause, Exit, Stop};
 
 use crate::memory::Memory;
+use calls::CallTrace;
+use code_cache::CodeCache;
+use dwt::Dwt;
+use exceptions::Sleep;
+use flash_accelerator::FlashAccelerator;
+use fpu::FpuControl;
+use instruction::LR;
+use nvic::Nvic;
+use registers::Registers;
+use system_control::SystemControl;
+use systick::SysTick;
 
 /// The core with its private peripherals: NVIC, SCB, SysTick, DWT and FPU.
 ///
@@ -20,7 +52,31 @@ use crate::memory::Memory;
 ///    [`advance_to`](Self::advance_to) the next event, else [`run`](Self::run) until then. The next
 ///    event is the earliest of the peripherals' and [`next_systick`](Self::next_systick).
 pub struct Core {
+    registers: Registers,
+    /// The event register of WFE.
+    event: bool,
+    sleep: Sleep,
+    /// The local monitor of LDREX and STREX.
+    exclusive: bool,
+
+    nvic: Nvic,
+    scb: SystemControl,
+    systick: SysTick,
+    dwt: Dwt,
+    fpu: FpuControl,
+    /// Floating-point instructions may execute right away.
+    fpu_ready: bool,
+
     cycles: Cycle,
+    instructions: u64,
+    /// Where the current run ends at the latest. Zero: behind the current instruction.
+    horizon: Cycle,
+    /// Why it cannot go on.
+    fault: Option<Cause>,
+
+    code: CodeCache,
+    accelerator: FlashAccelerator,
+    calls: CallTrace,
 }
 
 impl Default for Core {
@@ -29,16 +85,51 @@ impl Default for Core {
     }
 }
 
-#[allow(unused_variables)]
 impl Core {
     /// A core at cycle 0, not reset yet.
     pub fn new() -> Self {
-        Self { cycles: 0 }
+        Self {
+            registers: Registers::at_reset(0, 0),
+            event: false,
+            sleep: Sleep::Awake,
+            exclusive: false,
+            nvic: Nvic::new(),
+            scb: SystemControl::new(),
+            systick: SysTick::default(),
+            dwt: Dwt::default(),
+            fpu: FpuControl::new(),
+            fpu_ready: false,
+            cycles: 0,
+            instructions: 0,
+            horizon: 0,
+            fault: None,
+            code: CodeCache::new(),
+            accelerator: FlashAccelerator::new(),
+            calls: CallTrace::default(),
+        }
     }
 
-    /// Reset: everything but the cycle and instruction counts. Forgets the decoded instructions, so
-    /// call it after an image was loaded.
-    pub fn reset(&mut self, memory: &Memory) {}
+    /// Reset: everything but the cycle and instruction counts and what is traced. Stack pointer and
+    /// entry point come from the vector table at address 0. Forgets the decoded instructions, so call
+    /// it after an image was loaded.
+    pub fn reset(&mut self, memory: &Memory) {
+        let vector = |address| memory.read32(address).unwrap_or(0);
+        let entry = vector(4);
+        self.registers = Registers::at_reset(vector(0), entry);
+        self.event = false;
+        self.sleep = Sleep::Awake;
+        self.exclusive = false;
+        self.nvic = Nvic::new();
+        self.scb = SystemControl::new();
+        self.systick = SysTick::default();
+        self.dwt = Dwt::default();
+        self.fpu = FpuControl::new();
+        self.fpu_ready = false;
+        self.fault = (entry & 1 == 0).then_some(Cause::ArmState(entry));
+        self.code.clear();
+        self.accelerator = FlashAccelerator::new();
+        self.calls.abandon();
+    }
 
     /// Cycles since power-on, sleep included.
     pub fn cycles(&self) -> Cycle {
@@ -47,41 +138,7 @@ impl Core {
 
     /// Instructions executed, those that failed their condition included.
     pub fn instructions(&self) -> u64 {
-        0
-    }
-
-    /// Lets time pass while asleep. Never goes back.
-    pub fn advance_to(&mut self, cycle: Cycle) {
-        self.cycles = self.cycles.max(cycle);
-    }
-
-    /// Drives one of the 82 interrupt inputs. A rising level makes it pending; a level that is still
-    /// high when the handler returns makes it pending again. Cheap when nothing changed.
-    pub fn set_interrupt_line(&mut self, irq: u8, level: bool) {}
-
-    /// Advances SysTick to now, then enters the highest pending exception that may preempt.
-    /// A stacking fault is reported by the next [`run`](Self::run).
-    pub fn take_pending_exceptions(&mut self, memory: &mut Memory) {}
-
-    /// Asleep in WFE or WFI.
-    pub fn is_sleeping(&self) -> bool {
-        false
-    }
-
-    /// Wakes if there is a reason to: the event register (WFE), or a pending interrupt that only
-    /// PRIMASK holds back (WFI). True: awake.
-    pub fn try_wake(&mut self) -> bool {
-        true
-    }
-
-    /// When SysTick makes its exception pending next.
-    pub fn next_systick(&self) -> Option<Cycle> {
-        None
-    }
-
-    /// Executes until the cycle counter reaches `until`, or for one of the reasons of [`Exit`].
-    pub fn run(&mut self, memory: &mut Memory, bus: &mut dyn Bus, until: Cycle) -> Exit {
-        Exit::Reached
+        self.instructions
     }
 
     /// What the firmware wrote to FLASH_ACR (RM0090 §3.9.1).
@@ -92,22 +149,55 @@ impl Core {
         icache: bool,
         dcache: bool,
     ) {
-    }
-
-    /// From now on records every call of the function in flash at `address`.
-    pub fn trace_calls(&mut self, address: u32) {}
-
-    /// The calls that returned since the last time, in the order of their returns.
-    pub fn take_calls(&mut self) -> Vec<Call> {
-        Vec::new()
+        self.accelerator
+            .set_timing(wait_states, prefetch, icache, dcache);
     }
 
     /// A general register: 0 to 12, 13 the stack pointer in use, 14 the link register, 15 the address
     /// of the next instruction. Others read as 0.
     pub fn register(&self, number: u8) -> u32 {
-        0
+        match number {
+            instruction::PC => self.registers.pc,
+            _ => self
+                .registers
+                .r
+                .get(usize::from(number))
+                .copied()
+                .unwrap_or(0),
+        }
     }
 
     /// Sets a general register, numbered as in [`register`](Self::register).
-    pub fn set_register(&mut self, number: u8, value: u32) {}
+    pub fn set_register(&mut self, number: u8, value: u32) {
+        match number {
+            instruction::PC => self.registers.pc = value & !1,
+            0..=LR => self.registers.r[usize::from(number)] = value,
+            _ => {}
+        }
+    }
+
+    /// An S register's bits, 0 to 31. Others read as 0.
+    pub fn float_register(&self, number: u8) -> u32 {
+        self.registers
+            .s
+            .get(usize::from(number))
+            .copied()
+            .unwrap_or(0)
+    }
+
+    /// APSR, IPSR and EPSR together.
+    pub fn xpsr(&self) -> u32 {
+        self.registers.xpsr()
+    }
+
+    /// Ends the run at the current instruction.
+    #[cold]
+    #[inline(never)]
+    fn fail(&mut self, cause: Cause) {
+        self.fault.get_or_insert(cause);
+        self.horizon = 0;
+    }
 }
+
+#[cfg(test)]
+mod tests;

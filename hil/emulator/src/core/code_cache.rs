@@ -1,0 +1,170 @@
+//! Flash, decoded once: one [`Instruction`] per halfword, filled in straight runs.
+
+use super::cycles;
+use super::decode::{Place, decode};
+use super::instruction::{Instruction, Operation};
+use crate::memory::{FLASH, FLASH_BYTES, Memory};
+
+/// Where decoding a run stops at the latest.
+const LONGEST_RUN: usize = 64;
+
+/// The decoded instructions of the flash.
+pub(super) struct CodeCache {
+    instructions: Box<[Instruction]>,
+    /// First instructions of functions whose calls are recorded, and the places they return to.
+    traced: Vec<u32>,
+}
+
+impl CodeCache {
+    pub fn new() -> Self {
+        Self {
+            instructions: vec![Instruction::UNDECODED; FLASH_BYTES / 2].into_boxed_slice(),
+            traced: Vec::new(),
+        }
+    }
+
+    /// Forgets everything but what is traced.
+    pub fn clear(&mut self) {
+        self.instructions.fill(Instruction::UNDECODED);
+    }
+
+    /// What is known about the instruction at `pc`; `None` outside flash.
+    #[inline(always)]
+    pub fn get(&self, pc: u32) -> Option<Instruction> {
+        self.instructions.get(index(pc)).copied()
+    }
+
+    /// Marks the instruction at `pc` for the call tracer.
+    pub fn trace(&mut self, pc: u32) {
+        if self.traced.contains(&pc) {
+            return;
+        }
+        self.traced.push(pc);
+        if let Some(instruction) = self.instructions.get_mut(index(pc)) {
+            if instruction.operation != Operation::Undecoded {
+                instruction.guard = instruction.guard.with_trace();
+            }
+        }
+    }
+
+    /// Decodes from `pc` on until the code leaves for good. This puts the conditions of IT blocks on
+    /// the instructions inside, so that the interpreter never sees an IT block of the flash, and
+    /// gives overlapping loads their cost.
+    #[cold]
+    #[inline(never)]
+    pub fn decode_run(&mut self, memory: &Memory, pc: u32) {
+        let mut address = pc;
+        let mut block = ItBlock::default();
+        let mut behind_transfer = false;
+        for count in 0.. {
+            let inside = block.is_open();
+            if count >= LONGEST_RUN && !inside {
+                break;
+            }
+            let Some(place) = self.instructions.get_mut(index(address)) else {
+                break;
+            };
+            if place.operation != Operation::Undecoded && !inside {
+                break;
+            }
+            let Some(mut instruction) = fetch(memory, address, block.next()) else {
+                break;
+            };
+            if instruction.operation == Operation::It {
+                block = ItBlock::new(instruction.immediate);
+                instruction.operation = Operation::Nop;
+            }
+            let transfers = instruction.is_pipelined_transfer();
+            if transfers && behind_transfer && instruction.cycles == cycles::LOAD {
+                instruction.cycles = cycles::PIPELINED_LOAD;
+            }
+            behind_transfer = transfers;
+            if self.traced.contains(&address) {
+                instruction.guard = instruction.guard.with_trace();
+            }
+            *place = instruction;
+            if instruction.ends_a_run() && !block.is_open() {
+                break;
+            }
+            address = address.wrapping_add(instruction.length.into());
+        }
+    }
+}
+
+fn index(pc: u32) -> usize {
+    (pc.wrapping_sub(FLASH) >> 1) as usize
+}
+
+/// Decodes one instruction from any memory.
+pub(super) fn fetch(memory: &Memory, address: u32, place: Place) -> Option<Instruction> {
+    let first = memory.read16(address)?;
+    let second = memory.read16(address.wrapping_add(2)).unwrap_or(0);
+    Some(decode(address, first, second, place))
+}
+
+/// ITSTATE: the condition of the next instruction and the mask of those to come (§A7.3.3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct ItBlock(u8);
+
+impl ItBlock {
+    /// As IT sets it: the first condition and the mask.
+    pub fn new(state: u32) -> Self {
+        Self(state as u8)
+    }
+
+    /// IT outside flash.
+    pub fn open(&mut self, state: u32) {
+        *self = Self::new(state);
+    }
+
+    pub fn is_open(self) -> bool {
+        self.0 & 15 != 0
+    }
+
+    /// The place of the next instruction, and a step past it.
+    pub fn next(&mut self) -> Place {
+        if !self.is_open() {
+            return Place::Plain;
+        }
+        let condition = self.0 >> 4;
+        self.0 = if self.0 & 7 == 0 {
+            0
+        } else {
+            self.0 & 0xe0 | self.0 << 1 & 0x1f
+        };
+        Place::InItBlock(condition)
+    }
+
+    /// ITSTATE in the bits it has in xPSR.
+    pub fn to_xpsr(self) -> u32 {
+        u32::from(self.0 & 3) << 25 | u32::from(self.0 >> 2) << 10
+    }
+
+    /// The inverse of [`to_xpsr`](Self::to_xpsr).
+    pub fn from_xpsr(xpsr: u32) -> Self {
+        Self((xpsr >> 25 & 3 | xpsr >> 8 & 0xfc) as u8)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_it_block_hands_out_then_and_else_in_the_order_of_its_mask() {
+        // ITTE NE: condition 1, mask 0b1010: bit 0 of the conditions to come, and a terminating one.
+        let mut block = ItBlock::new(0x1a);
+        assert_eq!(block.next(), Place::InItBlock(1));
+        assert_eq!(block.next(), Place::InItBlock(1));
+        assert_eq!(block.next(), Place::InItBlock(0));
+        assert_eq!(block.next(), Place::Plain);
+    }
+
+    #[test]
+    fn the_state_of_a_block_survives_the_status_register() {
+        for state in 0..=255 {
+            let block = ItBlock::new(state);
+            assert_eq!(ItBlock::from_xpsr(block.to_xpsr()), block);
+        }
+    }
+}

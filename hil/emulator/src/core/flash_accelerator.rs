@@ -1,0 +1,223 @@
+//! The adaptive real-time accelerator between core and flash (RM0090 §3.4.2): what instruction
+//! fetches and constants cost when the flash needs wait states.
+
+/// Bytes of a flash line, log2: 128 bits.
+const LINE_SHIFT: u32 = 4;
+/// Lines of the instruction cache.
+const INSTRUCTION_LINES: usize = 64;
+/// Lines of the data cache.
+const DATA_LINES: usize = 8;
+/// No line of a 32-bit address space.
+const NO_LINE: u32 = u32::MAX;
+/// Lines of 1 MiB of flash.
+const FLASH_LINES: usize = 1 << 16;
+/// The upper half of line numbers in flash: 0x0800_0000 >> LINE_SHIFT >> 16.
+const FLASH_REGION: u32 = 0x80;
+
+/// A few lines of flash, replaced least recently used first.
+struct LineCache<const N: usize> {
+    enabled: bool,
+    lines: [u32; N],
+    used: [u64; N],
+    clock: u64,
+    /// For each line of the flash 1 + the slot that holds it, or 0.
+    slots: Box<[u8]>,
+}
+
+impl<const N: usize> LineCache<N> {
+    fn new() -> Self {
+        Self {
+            enabled: false,
+            lines: [NO_LINE; N],
+            used: [0; N],
+            clock: 0,
+            slots: vec![0; FLASH_LINES].into_boxed_slice(),
+        }
+    }
+
+    fn enable(&mut self, enabled: bool) {
+        if self.enabled && !enabled {
+            *self = Self::new();
+        }
+        self.enabled = enabled;
+    }
+
+    /// Whether the line is held; it is from now on.
+    #[inline]
+    fn holds(&mut self, line: u32) -> bool {
+        if !self.enabled {
+            return false;
+        }
+        self.clock += 1;
+        let slot = self.slots[slot_index(line)];
+        if slot != 0 {
+            self.used[usize::from(slot - 1)] = self.clock;
+            return true;
+        }
+        self.replace(line);
+        false
+    }
+
+    fn replace(&mut self, line: u32) {
+        let mut oldest = 0;
+        for slot in 1..N {
+            if self.used[slot] < self.used[oldest] {
+                oldest = slot;
+            }
+        }
+        let evicted = self.lines[oldest];
+        if evicted != NO_LINE {
+            self.slots[slot_index(evicted)] = 0;
+        }
+        self.lines[oldest] = line;
+        self.used[oldest] = self.clock;
+        self.slots[slot_index(line)] = oldest as u8 + 1;
+    }
+}
+
+fn slot_index(line: u32) -> usize {
+    line as usize % FLASH_LINES
+}
+
+/// The accelerator as FLASH_ACR sets it up. After reset: no wait states, everything off.
+pub(super) struct FlashAccelerator {
+    wait_states: u32,
+    prefetch: bool,
+    instructions: LineCache<INSTRUCTION_LINES>,
+    data: LineCache<DATA_LINES>,
+    /// The line that instructions are fetched from now.
+    line: u32,
+    /// Since when.
+    entered: u64,
+}
+
+impl FlashAccelerator {
+    pub fn new() -> Self {
+        Self {
+            wait_states: 0,
+            prefetch: false,
+            instructions: LineCache::new(),
+            data: LineCache::new(),
+            line: NO_LINE,
+            entered: 0,
+        }
+    }
+
+    pub fn set_timing(&mut self, wait_states: u32, prefetch: bool, icache: bool, dcache: bool) {
+        self.wait_states = wait_states;
+        self.prefetch = prefetch;
+        self.instructions.enable(icache);
+        self.data.enable(dcache);
+    }
+
+    /// Forgets the current line: the next fetch is not in sequence.
+    pub fn jump(&mut self) {
+        self.line = NO_LINE;
+    }
+
+    /// Whether an instruction at `pc` needs another line than the one before it.
+    #[inline(always)]
+    pub fn changes_line(&self, pc: u32) -> bool {
+        pc >> LINE_SHIFT != self.line
+    }
+
+    /// The cycles that fetching from a new line takes. The next line in sequence is prefetched while
+    /// the current one executes, so only what is left of the wait states shows.
+    #[inline(never)]
+    pub fn enter_line(&mut self, pc: u32, now: u64) -> u64 {
+        let line = pc >> LINE_SHIFT;
+        let in_sequence = line == self.line.wrapping_add(1);
+        self.line = line;
+        if self.wait_states == 0 || line >> 16 != FLASH_REGION {
+            return 0;
+        }
+        let entered = std::mem::replace(&mut self.entered, now);
+        if self.instructions.holds(line) {
+            return 0;
+        }
+        let hidden = if in_sequence && self.prefetch {
+            now - entered
+        } else {
+            0
+        };
+        u64::from(self.wait_states).saturating_sub(hidden)
+    }
+
+    /// The cycles that reading a constant from flash takes beyond those of RAM.
+    #[inline]
+    pub fn read_constant(&mut self, address: u32) -> u64 {
+        if self.wait_states == 0 || self.data.holds(address >> LINE_SHIFT) {
+            return 0;
+        }
+        self.wait_states.into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::memory::FLASH;
+
+    fn accelerator(prefetch: bool, cache: bool) -> FlashAccelerator {
+        let mut accelerator = FlashAccelerator::new();
+        accelerator.set_timing(5, prefetch, cache, cache);
+        accelerator
+    }
+
+    #[test]
+    fn without_caches_every_new_line_waits() {
+        let mut accelerator = accelerator(false, false);
+        assert_eq!(accelerator.enter_line(FLASH, 0), 5);
+        assert!(!accelerator.changes_line(FLASH + 15));
+        assert_eq!(accelerator.enter_line(FLASH + 16, 100), 5);
+        assert_eq!(accelerator.enter_line(FLASH, 200), 5);
+        assert_eq!(accelerator.read_constant(FLASH), 5);
+        assert_eq!(accelerator.read_constant(FLASH), 5);
+    }
+
+    #[test]
+    fn the_prefetch_hides_the_wait_behind_the_line_before() {
+        let mut accelerator = accelerator(true, false);
+        accelerator.enter_line(FLASH, 100);
+        assert_eq!(accelerator.enter_line(FLASH + 16, 103), 2);
+        assert_eq!(accelerator.enter_line(FLASH + 32, 120), 0);
+        assert_eq!(accelerator.enter_line(FLASH + 96, 140), 5);
+    }
+
+    #[test]
+    fn a_loop_of_64_lines_runs_from_the_cache_and_one_of_65_does_not() {
+        for (lines, expected) in [(64, 0), (65, 65 * 5)] {
+            let mut accelerator = accelerator(false, true);
+            let mut pass = |accelerator: &mut FlashAccelerator| -> u64 {
+                (0..lines)
+                    .map(|line| accelerator.enter_line(FLASH + 16 * line, 0))
+                    .sum()
+            };
+            assert_eq!(pass(&mut accelerator), u64::from(lines) * 5);
+            assert_eq!(pass(&mut accelerator), expected);
+        }
+    }
+
+    #[test]
+    fn eight_lines_of_constants_are_held() {
+        let mut accelerator = accelerator(false, true);
+        for line in 0..8 {
+            assert_eq!(accelerator.read_constant(FLASH + 16 * line), 5);
+        }
+        assert_eq!(accelerator.read_constant(FLASH + 4), 0);
+        accelerator.read_constant(FLASH + 16 * 8);
+        assert_eq!(
+            accelerator.read_constant(FLASH + 16),
+            5,
+            "the least recently used went"
+        );
+        assert_eq!(accelerator.read_constant(FLASH + 4), 0);
+    }
+
+    #[test]
+    fn without_wait_states_flash_is_as_fast_as_ram() {
+        let mut accelerator = FlashAccelerator::new();
+        assert_eq!(accelerator.enter_line(FLASH, 0), 0);
+        assert_eq!(accelerator.read_constant(FLASH), 0);
+    }
+}
