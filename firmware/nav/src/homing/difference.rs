@@ -7,7 +7,7 @@ use crate::spectrum::{STORED_FREQUENCIES, Spectrum, StoredCoefficients, VIEW_FRE
 
 /// The least ratio of the smaller to the larger curvature over the two directions of the plane.
 /// Textured rooms have 0.2 and more; a view that is uniform but for the two ends of a corridor has
-/// less than 0.05, and there noise along the corridor is amplified twenty times.
+/// less than 0.05, and there the variance of the error along the corridor is twenty times that across.
 const LEAST_CURVATURE_RATIO: f32 = 0.05;
 
 /// E2(h) = ½ hᵀA h + bᵀh + c over h = (x, y, φ): x and y in units of R, φ the turn of the stored view

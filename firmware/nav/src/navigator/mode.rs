@@ -28,7 +28,8 @@ pub enum Mode {
     /// 0x0F: has forgotten the route, and does nothing.
     Clear,
     /// 0x01: one snapshot. 0x02: odometry. 0x03, 0x07: odometry, and snapshots along it. 0x05: a
-    /// sequence of snapshots for purely visual homing from one to the next.
+    /// sequence of snapshots for purely visual homing from one to the next; it stores no way between
+    /// them, so that odometry recorded after it does not lead back to its end.
     Record(Recording),
     /// 0x11: homes at the last snapshot and stays there.
     FollowStay,

@@ -27,7 +27,6 @@ struct Flight {
     drone: Drone,
     navigator: Navigator,
     events: Vec<Event>,
-    corrections: usize,
     /// The camera is covered.
     dark: bool,
 }
@@ -39,7 +38,6 @@ impl Flight {
             drone: Drone::new(seed, Point2::origin()),
             navigator: Navigator::new(Parameters::DEFAULT),
             events: Vec::new(),
-            corrections: 0,
             dark: false,
         }
     }
@@ -48,8 +46,8 @@ impl Flight {
         self.navigator.command(byte).expect("a command of the app");
     }
 
-    /// One period: STATE to the navigator, its set-point and correction to the autopilot. The flight
-    /// script leads instead where it says so.
+    /// One period: STATE to the navigator, its set-point and correction to the autopilot. Where there is
+    /// a script, it leads instead.
     fn period(&mut self, script: Option<Point2<f32>>) {
         let view = if self.dark {
             Spectrum::from_coefficients(Default::default())
@@ -65,7 +63,6 @@ impl Flight {
         if let Some(correction) = step.correction {
             self.drone.correct(&correction);
         }
-        self.corrections = self.events_of(|event| matches!(event, Event::Realigned { .. }));
     }
 
     fn fly_out(&mut self, way: impl IntoIterator<Item = (f32, f32)>) {
@@ -90,6 +87,10 @@ impl Flight {
 
     fn events_of(&self, kind: impl Fn(&Event) -> bool) -> usize {
         self.events.iter().filter(|event| kind(event)).count()
+    }
+
+    fn corrections(&self) -> usize {
+        self.events_of(|event| matches!(event, Event::Realigned { .. }))
     }
 
     fn home_error(&self) -> f32 {
@@ -171,7 +172,7 @@ fn a_drifted_heading_is_corrected_not_doubled() {
         (0..100).for_each(|_| flight.period(None));
         let after = flight.drone.north_error();
         assert!((before - drift).abs() < 0.05);
-        assert_eq!(flight.corrections, 1);
+        assert_eq!(flight.corrections(), 1);
         assert!(after.abs() < 0.05, "{before} rad became {after} rad");
     }
 }
@@ -217,7 +218,7 @@ fn in_the_dark_the_route_is_followed_by_odometry_and_nothing_is_realigned() {
     flight.dark = true;
     flight.command(FOLLOW);
     flight.fly_home();
-    assert_eq!(flight.corrections, 0);
+    assert_eq!(flight.corrections(), 0);
     assert!(flight.events_of(|event| matches!(event, Event::NoVector { .. })) >= 2);
     assert!(flight.home_error() < 1.0, "{} m", flight.home_error());
 }
