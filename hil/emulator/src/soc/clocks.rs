@@ -111,6 +111,9 @@ mod register {
     pub const BDCR: u32 = 0x70;
     pub const CSR: u32 = 0x74;
     pub const PLLI2SCFGR: u32 = 0x84;
+    /// Reserved on an F407, the clock multiplexers of its larger sisters: drivers for the whole
+    /// family write their reset value to it.
+    pub const DCKCFGR: u32 = 0x8c;
 }
 use register::*;
 
@@ -193,7 +196,7 @@ impl Rcc {
             }
             PLLCFGR => self.pllcfgr,
             CFGR => self.cfgr | (self.cfgr & 3) << 2,
-            CIR => 0,
+            CIR | DCKCFGR => 0,
             BDCR => self.bdcr | self.lse.bits(now, 0),
             CSR => self.reset_flags | self.lsi.bits(now, 0),
             _ => self.plain[plain_index(offset)?],
@@ -218,6 +221,7 @@ impl Rcc {
                 }
                 Ok(Effect::None)
             }
+            DCKCFGR if value == 0 => Ok(Effect::None),
             BDCR => {
                 self.write_bdcr(value, now);
                 Ok(Effect::None)
