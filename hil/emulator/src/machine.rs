@@ -8,7 +8,7 @@ pub use fault::{Fault, Reason};
 use crate::core::{Call, Core, Cycle, Exit};
 use crate::image::{Image, ImageError};
 use crate::memory::Memory;
-use crate::soc::{DcmiCounters, FlashTiming, Lines, NEVER, Soc, UsartCounters};
+use crate::soc::{DcmiCounters, FlashTiming, Lines, NEVER, ResetCause, Soc, UsartCounters};
 use crate::time::Nanos;
 use crate::wiring::Wiring;
 
@@ -75,6 +75,16 @@ impl<W: Wiring> Machine<W> {
             }
             self.run_to(end)?;
         }
+    }
+
+    /// Resets the chip, as after its watchdog expired: the firmware starts again, RAM keeps what it
+    /// holds, virtual time and the board go on.
+    pub fn reset(&mut self, cause: ResetCause) {
+        let now = self.core.cycles();
+        self.soc.reset(&mut self.memory, now, cause);
+        self.core.reset(&self.memory);
+        self.lines = Lines::default();
+        self.flash_timing = self.soc.flash_timing();
     }
 
     /// Brings the chip to the core's present, and the core's inputs up to date.

@@ -59,6 +59,29 @@ impl ClockTree {
     }
 }
 
+/// What reset the chip. Software reads it in RCC_CSR (RM0090 §7.3.21).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ResetCause {
+    /// The NRST pin.
+    Pin,
+    /// AIRCR.SYSRESETREQ.
+    Software,
+    /// The independent watchdog.
+    Watchdog,
+}
+
+impl ResetCause {
+    /// The flags it leaves. Every internal reset pulls NRST as well (RM0090 §7.1.1).
+    fn flags(self) -> u32 {
+        let own = match self {
+            Self::Pin => 0,
+            Self::Software => 1 << 28,
+            Self::Watchdog => 1 << 29,
+        };
+        own | 1 << 26
+    }
+}
+
 /// What the rest of the chip must do after a register was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
@@ -182,6 +205,16 @@ impl Rcc {
             reset_flags: POWER_ON_FLAGS,
             plain: PLAIN.map(|(_, reset, _)| reset),
         }
+    }
+
+    /// A system reset: the reset flags and the backup domain keep what they hold.
+    pub fn reset(&mut self, cause: ResetCause) {
+        *self = Self {
+            reset_flags: self.reset_flags | cause.flags(),
+            bdcr: self.bdcr,
+            lse: self.lse,
+            ..Self::new(self.crystal)
+        };
     }
 
     /// Reads a register at `now`.

@@ -25,6 +25,7 @@ mod timer;
 mod usart;
 mod watchdog;
 
+pub use clocks::ResetCause;
 pub use dcmi::DcmiCounters;
 pub use flash::FlashTiming;
 pub use interrupts::Lines;
@@ -107,6 +108,36 @@ impl<W: Wiring> Soc<W> {
             next: None,
             refusal: None,
         }
+    }
+
+    /// A system reset at `now`. What is on the wires goes on, and the counters with it; pins float,
+    /// of which the wiring is not told.
+    pub fn reset(&mut self, memory: &mut Memory, now: Cycle, cause: ResetCause) {
+        self.rcc.reset(cause);
+        self.tree = ClockTree::RESET;
+        self.time.change(now, self.tree.hclk);
+        self.power = Power::new();
+        self.flash = Flash::default();
+        self.syscfg = Syscfg::default();
+        self.exti = Exti::default();
+        self.dma = Dma::new();
+        self.watchdog = Watchdog::new();
+        self.timers = core::array::from_fn(|index| Timer::new(index as u8 + 1));
+        self.ports.iter_mut().for_each(Gpio::reset);
+        self.usarts.iter_mut().for_each(Usart::reset);
+        self.dcmi.reset();
+        for i2c in &mut self.i2cs {
+            i2c.reset(&mut Reach {
+                now,
+                time: &self.time,
+                memory: &mut *memory,
+                dma: &mut self.dma,
+                wiring: &mut self.wiring,
+            });
+        }
+        self.refusal = None;
+        self.next = None;
+        self.refresh_outputs(now);
     }
 
     /// The devices around the chip.
