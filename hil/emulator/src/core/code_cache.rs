@@ -1,4 +1,8 @@
-//! Flash, decoded once: one [`Instruction`] per halfword, filled in straight runs.
+//! Flash, decoded once, in straight runs.
+//!
+//! The instructions of a run lie one behind the other, so that the interpreter gets from one to the
+//! next without looking anything up; only a branch needs to find its place. Behind each run is a
+//! sentinel that sends the interpreter to look again.
 
 use super::cycles;
 use super::decode::{Place, decode};
@@ -7,10 +11,15 @@ use crate::memory::{FLASH, FLASH_BYTES, Memory};
 
 /// Where decoding a run stops at the latest.
 const LONGEST_RUN: usize = 64;
+/// Where the sentinel is that stands for all that is not decoded.
+const NOWHERE: usize = 0;
 
 /// The decoded instructions of the flash.
 pub(super) struct CodeCache {
-    instructions: Box<[Instruction]>,
+    /// Runs of instructions, each with an undecoded one at its end.
+    instructions: Vec<Instruction>,
+    /// For each halfword of the flash, where its instruction is in `instructions`.
+    places: Vec<u32>,
     /// First instructions of functions whose calls are recorded, and the places they return to.
     traced: Vec<u32>,
 }
@@ -18,20 +27,32 @@ pub(super) struct CodeCache {
 impl CodeCache {
     pub fn new() -> Self {
         Self {
-            instructions: vec![Instruction::UNDECODED; FLASH_BYTES / 2].into_boxed_slice(),
+            instructions: vec![Instruction::UNDECODED],
+            places: vec![0; FLASH_BYTES / 2],
             traced: Vec::new(),
         }
     }
 
     /// Forgets everything but what is traced.
     pub fn clear(&mut self) {
-        self.instructions.fill(Instruction::UNDECODED);
+        let traced = std::mem::take(&mut self.traced);
+        *self = Self {
+            traced,
+            ..Self::new()
+        };
     }
 
-    /// What is known about the instruction at `pc`; `None` outside flash.
+    /// Where the instruction at `pc` is, or a sentinel.
     #[inline(always)]
-    pub fn get(&self, pc: u32) -> Option<Instruction> {
-        self.instructions.get(index(pc)).copied()
+    pub fn locate(&self, pc: u32) -> usize {
+        let place = self.places.get(index(pc));
+        place.map_or(NOWHERE, |place| *place as usize)
+    }
+
+    /// The instruction at a place: one that was located, or the next one of its run.
+    #[inline(always)]
+    pub fn at(&self, place: usize) -> Instruction {
+        self.instructions[place]
     }
 
     /// Marks the instruction at `pc` for the call tracer.
@@ -40,33 +61,33 @@ impl CodeCache {
             return;
         }
         self.traced.push(pc);
-        if let Some(instruction) = self.instructions.get_mut(index(pc)) {
-            if instruction.operation != Operation::Undecoded {
-                instruction.guard = instruction.guard.with_trace();
-            }
+        let place = self.locate(pc);
+        if place != NOWHERE {
+            let instruction = &mut self.instructions[place];
+            instruction.guard = instruction.guard.with_trace();
         }
     }
 
     /// Decodes from `pc` on until the code leaves for good. This puts the conditions of IT blocks on
     /// the instructions inside, so that the interpreter never sees an IT block of the flash, and
-    /// gives overlapping loads their cost.
+    /// gives overlapping loads their cost. False: `pc` is not in flash.
     #[cold]
     #[inline(never)]
-    pub fn decode_run(&mut self, memory: &Memory, pc: u32) {
+    pub fn decode_run(&mut self, memory: &Memory, pc: u32) -> bool {
+        if self.locate(pc) != NOWHERE {
+            return true;
+        }
         let mut address = pc;
         let mut block = ItBlock::default();
         let mut behind_transfer = false;
         for count in 0.. {
             let inside = block.is_open();
-            if count >= LONGEST_RUN && !inside {
+            if !inside && (count >= LONGEST_RUN || self.locate(address) != NOWHERE) {
                 break;
             }
-            let Some(place) = self.instructions.get_mut(index(address)) else {
+            let Some(place) = self.places.get_mut(index(address)) else {
                 break;
             };
-            if place.operation != Operation::Undecoded && !inside {
-                break;
-            }
             let Some(mut instruction) = fetch(memory, address, block.next()) else {
                 break;
             };
@@ -82,12 +103,15 @@ impl CodeCache {
             if self.traced.contains(&address) {
                 instruction.guard = instruction.guard.with_trace();
             }
-            *place = instruction;
+            *place = self.instructions.len() as u32;
+            self.instructions.push(instruction);
             if instruction.ends_a_run() && !block.is_open() {
                 break;
             }
             address = address.wrapping_add(instruction.length.into());
         }
+        self.instructions.push(Instruction::UNDECODED);
+        self.locate(pc) != NOWHERE
     }
 }
 

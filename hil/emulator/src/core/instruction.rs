@@ -5,7 +5,7 @@
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(u8)]
 pub(super) enum Operation {
-    /// Not decoded yet: an empty place of the code cache.
+    /// The end of what is decoded, and all that is not: see [`Instruction::UNDECODED`].
     Undecoded,
     /// No such instruction; `immediate` is its encoding.
     Undefined,
@@ -352,11 +352,12 @@ pub(super) struct Instruction {
 }
 
 impl Instruction {
-    /// An empty place of the code cache. It takes no time and leads nowhere.
+    /// Makes the interpreter decode, or find, what is at the program counter. It takes no time, and
+    /// its odd length keeps it from ever being behind itself.
     pub const UNDECODED: Self = Self {
         operation: Operation::Undecoded,
         guard: Guard::NONE,
-        length: 0,
+        length: 1,
         cycles: 0,
         d: PC,
         n: PC,

@@ -12,9 +12,8 @@ mod system;
 use super::bus::{Bus, Cycle};
 use super::code_cache::fetch;
 use super::exceptions::Sleep;
-use super::instruction::{Guard, Instruction};
+use super::instruction::{Guard, Instruction, LR};
 use super::{Cause, Core, Exit, Stop};
-use crate::core::instruction::LR;
 use crate::memory::Memory;
 
 impl Core {
@@ -25,38 +24,54 @@ impl Core {
         let may_run = self.fault.is_none() && self.sleep == Sleep::Awake;
         self.horizon = if may_run { until } else { 0 };
         let mut pc = self.registers.pc;
+        let mut next = pc;
+        let mut place = self.code.locate(pc);
         while self.cycles < self.horizon {
-            pc = self.registers.pc;
+            pc = next;
             if self.accelerator.changes_line(pc) {
                 self.cycles += self.accelerator.enter_line(pc, self.cycles);
             }
-            let Some(instruction) = self
-                .code
-                .get(pc)
-                .or_else(|| self.fetch_outside_flash(memory, pc))
-            else {
-                self.fail(Cause::Fetch(pc));
-                break;
-            };
-            self.instructions += 1;
-            let next = pc.wrapping_add(instruction.length.into());
-            if instruction.guard != Guard::NONE && !self.passes(memory, instruction.guard, pc) {
-                self.cycles += 1;
-                self.registers.pc = next;
-                continue;
+            let instruction = self.code.at(place);
+            next = pc.wrapping_add(instruction.length.into());
+            self.step(memory, bus, instruction, pc);
+            if self.registers.pc == next {
+                place += 1;
+            } else {
+                next = self.registers.pc;
+                place = self.code.locate(next);
             }
-            self.cycles += Cycle::from(instruction.cycles);
-            self.registers.pc = next;
-            self.execute(memory, bus, instruction);
         }
         self.exit(pc, until)
     }
 
-    /// Code in RAM, or in flash by way of address 0, is decoded every time.
+    /// Executes one instruction, the one at `pc`.
+    #[inline(always)]
+    fn step(&mut self, memory: &mut Memory, bus: &mut dyn Bus, instruction: Instruction, pc: u32) {
+        self.instructions += 1;
+        self.registers.pc = pc.wrapping_add(instruction.length.into());
+        if instruction.guard != Guard::NONE && !self.passes(memory, instruction.guard, pc) {
+            self.cycles += 1;
+            return;
+        }
+        self.cycles += Cycle::from(instruction.cycles);
+        self.execute(memory, bus, instruction);
+    }
+
+    /// Where the interpreter comes upon undecoded code: decodes a run of flash. Code in RAM, or in
+    /// flash by way of address 0, is decoded and executed one instruction at a time.
     #[cold]
     #[inline(never)]
-    fn fetch_outside_flash(&mut self, memory: &Memory, pc: u32) -> Option<Instruction> {
-        fetch(memory, pc, self.registers.it_block.next())
+    fn decode_more(&mut self, memory: &mut Memory, bus: &mut dyn Bus) {
+        let pc = self.registers.pc - u32::from(Instruction::UNDECODED.length);
+        self.registers.pc = pc;
+        self.instructions -= 1;
+        if self.code.decode_run(memory, pc) {
+            return;
+        }
+        match fetch(memory, pc, self.registers.it_block.next()) {
+            Some(instruction) => self.step(memory, bus, instruction, pc),
+            None => self.fail(Cause::Fetch(pc)),
+        }
     }
 
     /// Does what a guard asks for. False: the instruction does not execute.

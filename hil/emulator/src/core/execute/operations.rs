@@ -460,10 +460,7 @@ impl Core {
             Operation::Wfi => self.fall_asleep(Sleep::ForInterrupt),
             Operation::Sev => self.event = true,
 
-            Operation::Undecoded => {
-                self.instructions -= 1;
-                self.code.decode_run(memory, self.registers.pc);
-            }
+            Operation::Undecoded => self.decode_more(memory, bus),
             Operation::Undefined => self.fail(Cause::UndefinedInstruction(i.immediate)),
             Operation::Unpredictable => self.fail(Cause::Unpredictable(i.immediate)),
         }
