@@ -1,5 +1,6 @@
 //! The wire to the autopilot: USART2, 8N1, DMA both ways.
 
+use embassy_stm32::gpio::Pull;
 use embassy_stm32::mode::Async;
 use embassy_stm32::usart::{Config, ConfigError, RingBufferedUartRx, Uart, UartTx};
 use static_cell::ConstStaticCell;
@@ -24,6 +25,8 @@ pub fn open(
 ) -> Result<(UartTx<'static, Async>, RingBufferedUartRx<'static>), ConfigError> {
     let mut config = Config::default();
     config.baudrate = BAUD;
+    // The idle level: an autopilot that is not there is silent.
+    config.rx_pull = Pull::Up;
     let uart = Uart::new(
         port.uart,
         port.rx,
