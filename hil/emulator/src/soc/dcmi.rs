@@ -3,6 +3,7 @@
 //! The wiring reports a line when its last byte has been clocked out, so bytes are packed and moved
 //! once per line. On the wires data is valid while VSYNC and HSYNC are high.
 
+mod fifo;
 mod window;
 
 use super::dma::{Dma, Request};
@@ -11,6 +12,7 @@ use super::map::Block;
 use super::refusal::Refusal;
 use crate::memory::Memory;
 use crate::wiring::CameraSignal;
+use fifo::Fifo;
 use window::Window;
 
 const CR: u32 = 0x00;
@@ -42,9 +44,6 @@ const OVERRUN: u32 = 1 << 1;
 const VSYNC: u32 = 1 << 3;
 const LINE: u32 = 1 << 4;
 const INTERRUPTS: u32 = 0x1f;
-
-/// Words the FIFO holds (RM0090 §15.5.4).
-const FIFO_WORDS: usize = 4;
 
 /// What became of the camera's frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,11 +84,7 @@ pub struct Dcmi {
     /// Frames since CAPTURE was set: FCRC leaves out some.
     grabbed: u32,
     line: u32,
-    /// Bytes of an unfinished word, first in the low bits.
-    packing: u32,
-    packed: u32,
-    fifo: [u32; FIFO_WORDS],
-    fifo_len: usize,
+    fifo: Fifo,
     counters: DcmiCounters,
 }
 
@@ -105,10 +100,7 @@ impl Dcmi {
             stopping: false,
             grabbed: 0,
             line: 0,
-            packing: 0,
-            packed: 0,
-            fifo: [0; FIFO_WORDS],
-            fifo_len: 0,
+            fifo: Fifo::default(),
             counters: DcmiCounters::default(),
         }
     }
@@ -191,38 +183,26 @@ impl Dcmi {
         }
     }
 
-    /// Packs a byte; a full word goes to the FIFO. False: the FIFO overran and the frame is lost.
+    /// False: the FIFO overran and the frame is lost.
     fn take(&mut self, byte: u8, memory: &mut Memory, dma: &mut Dma) -> bool {
-        self.packing |= u32::from(byte) << (8 * self.packed);
-        self.packed += 1;
-        self.packed < 4 || self.push(memory, dma)
-    }
-
-    fn push(&mut self, memory: &mut Memory, dma: &mut Dma) -> bool {
-        if self.fifo_len == FIFO_WORDS {
+        let taken = self.fifo.push(byte);
+        if taken {
+            self.serve(memory, dma);
+        } else {
             self.overrun();
-            return false;
         }
-        self.fifo[self.fifo_len] = self.packing;
-        self.fifo_len += 1;
-        (self.packing, self.packed) = (0, 0);
-        self.serve(memory, dma);
-        true
+        taken
     }
 
     /// The FIFO is reset and the next frame start awaited (RM0090 §15.5.4); a snapshot is over.
     fn overrun(&mut self) {
         self.ris |= OVERRUN;
         self.counters.overruns += 1;
-        self.flush();
+        self.fifo = Fifo::default();
         self.frame = Frame::Ignored;
         if self.cr & SNAPSHOT != 0 || self.stopping {
             self.stop();
         }
-    }
-
-    fn flush(&mut self) {
-        (self.packing, self.packed, self.fifo_len) = (0, 0, 0);
     }
 
     fn stop(&mut self) {
@@ -232,25 +212,25 @@ impl Dcmi {
 
     /// Lets DMA empty the FIFO.
     pub fn serve(&mut self, memory: &mut Memory, dma: &mut Dma) {
-        while self.fifo_len > 0 && dma.store(memory, Request::Dcmi, self.fifo[0]) {
-            self.pop();
+        while let Some(word) = self.fifo.first() {
+            if !dma.store(memory, Request::Dcmi, word) {
+                return;
+            }
+            self.fifo.pop();
         }
-    }
-
-    fn pop(&mut self) {
-        self.fifo.rotate_left(1);
-        self.fifo_len -= 1;
     }
 
     /// The last byte of the frame, or of its window, is in.
     fn frame_captured(&mut self, memory: &mut Memory, dma: &mut Dma) {
         // An unfinished word is filled with zeros.
-        if self.packed > 0 && !self.push(memory, dma) {
-            return;
+        while self.fifo.is_mid_word() {
+            if !self.take(0, memory, dma) {
+                return;
+            }
         }
         self.frame = Frame::Done;
         self.ris |= FRAME;
-        if self.line > 0 && self.fifo_len == 0 {
+        if self.line > 0 && self.fifo.first().is_none() {
             self.counters.frames_captured += 1;
         }
         if self.cr & SNAPSHOT != 0 || self.stopping {
@@ -286,10 +266,8 @@ impl Dcmi {
             CWSTRT => self.window.start,
             CWSIZE => self.window.size,
             DR => {
-                let word = self.fifo[0];
-                if self.fifo_len > 0 {
-                    self.pop();
-                }
+                let word = self.fifo.first().unwrap_or(0);
+                self.fifo.pop();
                 word
             }
             _ => return Err(unknown(offset)),
@@ -299,7 +277,7 @@ impl Dcmi {
     /// HSYNC is low whenever software looks: lines pass in one instant. VSYNC shows the blanking.
     fn status(&self) -> u32 {
         let blanking = u32::from(self.frame == Frame::Blanking);
-        1 | blanking << 1 | u32::from(self.fifo_len > 0) << 2
+        1 | blanking << 1 | u32::from(self.fifo.first().is_some()) << 2
     }
 
     /// Writes a register.
@@ -339,7 +317,7 @@ impl Dcmi {
         }
         if !enabled {
             self.stopping = false;
-            self.flush();
+            self.fifo = Fifo::default();
             if self.frame != Frame::Blanking {
                 self.frame = Frame::Ignored;
             }

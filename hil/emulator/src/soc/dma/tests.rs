@@ -1,7 +1,19 @@
 //! Claims of RM0090 §10, on the registers.
 
 use super::*;
-use crate::memory::SRAM;
+use crate::memory::{CCM, SRAM};
+
+/// S_CR.
+const ENABLE: u32 = 1 << 0;
+const CIRCULAR: u32 = 1 << 8;
+const MEMORY_INCREMENT: u32 = 1 << 10;
+const DOUBLE_BUFFER: u32 = 1 << 18;
+const CURRENT_TARGET: u32 = 1 << 19;
+
+/// ISR, of stream 0.
+const TRANSFER_ERROR: u32 = 1 << 3;
+const HALF_TRANSFER: u32 = 1 << 4;
+const TRANSFER_COMPLETE: u32 = 1 << 5;
 
 /// DMA2 stream 1: S_CR of the stream.
 const S1: u32 = 0x10 + 0x18;
