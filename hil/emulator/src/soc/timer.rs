@@ -1,14 +1,16 @@
 //! TIM1 to TIM14 as up-counters with output compare: time bases, alarms and clock outputs
 //! (RM0090 §17 to §20).
 //!
-//! A timer's state is brought up to date only when somebody looks or an interrupt is due; between
-//! two looks it is a pure function of the cycle counter.
+//! A timer is brought up to date only when somebody looks or an interrupt is due.
+
+mod counter;
 
 use super::interrupts::{self, Lines};
 use super::map::Block;
 use super::refusal::Refusal;
 use super::timeline::NEVER;
 use crate::core::Cycle;
+use counter::{Counter, UPDATE};
 
 mod register {
     pub const CR1: u32 = 0x00;
@@ -42,42 +44,16 @@ const ARR_PRELOAD: u32 = 1 << 7;
 const CR1_WRITABLE: u32 = 0x38f;
 
 /// SR and DIER: update, then compare 1 to 4.
-const UPDATE: u32 = 1 << 0;
 const INTERRUPTS: u32 = 0x1f;
 
 /// BDTR.MOE.
 const MAIN_OUTPUT: u32 = 1 << 15;
 
-/// A register value and the shadow that works until the next update event.
-#[derive(Clone, Copy, Debug, Default)]
-struct Shadowed {
-    written: u32,
-    active: u32,
-}
-
-impl Shadowed {
-    fn write(&mut self, value: u32, preload: bool) {
-        self.written = value;
-        if !preload {
-            self.active = value;
-        }
-    }
-
-    fn update(&mut self) {
-        self.active = self.written;
-    }
-
-    fn differs(&self) -> bool {
-        self.written != self.active
-    }
-}
-
 /// One timer.
 #[derive(Clone, Debug)]
 pub struct Timer {
     number: u8,
-    /// HCLK cycles of one timer clock; 0 while the RCC gates it.
-    clock_cycles: u64,
+    counter: Counter,
     cr1: u32,
     cr2: u32,
     dier: u32,
@@ -85,20 +61,14 @@ pub struct Timer {
     ccmr: [u32; 2],
     ccer: u32,
     bdtr: u32,
-    psc: Shadowed,
-    arr: Shadowed,
-    ccr: [Shadowed; 4],
-    /// The counter's value at cycle `since`, when it had just changed to it.
-    count: u32,
-    since: Cycle,
 }
 
 impl Timer {
     /// The reset state of timer 1..=14.
     pub fn new(number: u8) -> Self {
-        let mut timer = Self {
+        Self {
             number,
-            clock_cycles: 0,
+            counter: Counter::new(top(number), channels(number)),
             cr1: 0,
             cr2: 0,
             dier: 0,
@@ -106,21 +76,15 @@ impl Timer {
             ccmr: [0; 2],
             ccer: 0,
             bdtr: 0,
-            psc: Shadowed::default(),
-            arr: Shadowed::default(),
-            ccr: [Shadowed::default(); 4],
-            count: 0,
-            since: 0,
-        };
-        timer.arr.write(timer.top(), false);
-        timer
+        }
     }
 
     /// Back to the reset state; the clock keeps running.
     pub fn reset(&mut self) {
-        let clock_cycles = self.clock_cycles;
+        self.counter.reset();
+        let counter = self.counter.clone();
         *self = Self {
-            clock_cycles,
+            counter,
             ..Self::new(self.number)
         };
     }
@@ -128,120 +92,20 @@ impl Timer {
     /// From `now` on, one timer clock is `cycles` of HCLK; 0 stops the timer.
     pub fn set_clock(&mut self, now: Cycle, cycles: u64) {
         self.sync(now);
-        self.clock_cycles = cycles;
-        self.since = now;
+        self.counter.set_clock(now, cycles);
     }
 
     fn channels(&self) -> usize {
-        match self.number {
-            6 | 7 => 0,
-            10 | 11 | 13 | 14 => 1,
-            9 | 12 => 2,
-            _ => 4,
-        }
+        channels(self.number)
     }
 
     fn has_main_output(&self) -> bool {
         matches!(self.number, 1 | 8)
     }
 
-    /// The counter's largest value: TIM2 and TIM5 are 32 bits wide.
-    fn top(&self) -> u32 {
-        if matches!(self.number, 2 | 5) {
-            u32::MAX
-        } else {
-            0xffff
-        }
-    }
-
-    /// A counter whose reload is zero stands still (RM0090 §18.4.12).
-    fn counts(&self) -> bool {
-        self.cr1 & ENABLE != 0 && self.clock_cycles != 0 && self.arr.active != 0
-    }
-
-    /// HCLK cycles of one count.
-    fn period(&self) -> u64 {
-        (u64::from(self.psc.active) + 1) * self.clock_cycles
-    }
-
-    /// Counts until the counter is next zero.
-    fn to_zero(&self) -> u64 {
-        let last = if self.count <= self.arr.active {
-            self.arr.active
-        } else {
-            self.top()
-        };
-        u64::from(last - self.count) + 1
-    }
-
-    /// Brings the counter and its flags to `now`.
+    /// Brings the counter and the flags to `now`.
     pub fn sync(&mut self, now: Cycle) {
-        while self.counts() {
-            let counts = now.saturating_sub(self.since) / self.period();
-            if counts == 0 {
-                return;
-            }
-            let to_zero = self.to_zero();
-            if counts < to_zero {
-                self.pass(counts);
-                return;
-            }
-            self.overflow(to_zero);
-            self.skip_whole_rounds(now);
-        }
-        self.since = now;
-    }
-
-    /// Counts up without reaching zero.
-    fn pass(&mut self, counts: u64) {
-        let from = self.count;
-        self.since += counts * self.period();
-        self.count += counts as u32;
-        for channel in 0..self.channels() {
-            if (from + 1..=self.count).contains(&self.ccr[channel].active) {
-                self.sr |= 2 << channel;
-            }
-        }
-    }
-
-    /// Counts `to_zero` times: through the rest of the round, to zero.
-    fn overflow(&mut self, to_zero: u64) {
-        let at_reload = self.count <= self.arr.active;
-        for channel in 0..self.channels() {
-            let compare = self.ccr[channel].active;
-            // Zero, and values beyond the reload, match at the overflow (RM0090 §18.4.5, CC1IF).
-            if compare == 0 || compare > self.count {
-                self.sr |= 2 << channel;
-            }
-        }
-        self.since += to_zero * self.period();
-        self.count = 0;
-        if at_reload && self.cr1 & UPDATE_DISABLE == 0 {
-            self.sr |= UPDATE;
-            self.update();
-            if self.cr1 & ONE_PULSE != 0 {
-                self.cr1 &= !ENABLE;
-            }
-        }
-    }
-
-    /// All rounds after an update are alike: leaves out those that change no flag any more.
-    fn skip_whole_rounds(&mut self, now: Cycle) {
-        if self.counts() {
-            let round = self.period() * (u64::from(self.arr.active) + 1);
-            let rounds = now.saturating_sub(self.since) / round;
-            self.since += rounds.saturating_sub(2) * round;
-        }
-    }
-
-    fn update(&mut self) {
-        self.psc.update();
-        self.arr.update();
-        self.ccr.iter_mut().for_each(Shadowed::update);
-    }
-
-    fn shadows_wait(&self) -> bool {
-        self.psc.differs() || self.arr.differs() || self.ccr.iter().any(Shadowed::differs)
+        self.sr |= self.counter.sync(now);
     }
 
     /// True while a channel may toggle its pin.
@@ -253,30 +117,10 @@ impl Timer {
     /// `sync` first.
     pub fn next(&self) -> Cycle {
         let wanted = self.dier & !self.sr & INTERRUPTS;
-        if wanted == 0 && !self.drives_pins() || !self.counts() {
+        if wanted == 0 && !self.drives_pins() {
             return NEVER;
         }
-        let to_zero = self.to_zero();
-        let mut counts = u64::MAX;
-        if wanted & UPDATE != 0 || self.shadows_wait() {
-            counts = to_zero;
-        }
-        for channel in 0..self.channels() {
-            if wanted & 2 << channel == 0 {
-                continue;
-            }
-            let compare = self.ccr[channel].active;
-            let behind = u64::from(compare.saturating_sub(self.count));
-            counts = counts.min(if compare == 0 || behind >= to_zero {
-                to_zero
-            } else if behind == 0 {
-                to_zero + u64::from(compare)
-            } else {
-                behind
-            });
-        }
-        let cycles = counts.saturating_mul(self.period());
-        self.since.saturating_add(cycles)
+        self.counter.next(wanted)
     }
 
     /// Drives the timer's interrupt lines.
@@ -295,16 +139,17 @@ impl Timer {
         let index = usize::from(channel.checked_sub(1)?);
         let enabled = self.ccer >> (4 * index) & 1 != 0;
         let driven = !self.has_main_output() || self.bdtr & MAIN_OUTPUT != 0;
-        if index >= self.channels() || !enabled || !driven || !self.counts() {
+        if index >= self.channels() || !enabled || !driven || !self.counter.counts() {
             return None;
         }
-        let round = (f64::from(self.psc.active) + 1.0) * (f64::from(self.arr.active) + 1.0);
-        let compare = self.ccr[index].active;
+        let reload = self.counter.arr.active;
+        let round = (f64::from(self.counter.psc.active) + 1.0) * (f64::from(reload) + 1.0);
+        let compare = self.counter.ccr[index].active;
         match self.ccmr[index / 2] >> (8 * (index % 2) + 4) & 7 {
             // Toggle: two rounds make a period.
-            3 if compare <= self.arr.active => Some(clock / round / 2.0),
+            3 if compare <= reload => Some(clock / round / 2.0),
             // PWM: neither always low nor always high.
-            6 | 7 if (1..=self.arr.active).contains(&compare) => Some(clock / round),
+            6 | 7 if (1..=reload).contains(&compare) => Some(clock / round),
             _ => None,
         }
     }
@@ -313,16 +158,16 @@ impl Timer {
     pub fn read(&self, offset: u32) -> Result<u32, Refusal> {
         self.exists(offset)?;
         Ok(match offset {
-            CR1 => self.cr1,
+            CR1 => self.cr1 | u32::from(self.counter.enabled),
             CR2 => self.cr2,
             DIER => self.dier,
             SR => self.sr,
             CCMR1 | CCMR2 => self.ccmr[(offset - CCMR1) as usize / 4],
             CCER => self.ccer,
-            CNT => self.count,
-            PSC => self.psc.written,
-            ARR => self.arr.written,
-            CCR1..=CCR4 => self.ccr[(offset - CCR1) as usize / 4].written,
+            CNT => self.counter.count,
+            PSC => self.counter.psc.written,
+            ARR => self.counter.arr.written,
+            CCR1..=CCR4 => self.counter.ccr[(offset - CCR1) as usize / 4].written,
             BDTR => self.bdtr,
             // SMCR, RCR, DCR, DMAR and OR take only zeros; EGR reads as zero.
             _ => 0,
@@ -332,7 +177,7 @@ impl Timer {
     /// Writes a register at `now`; `sync` first.
     pub fn write(&mut self, offset: u32, value: u32, now: Cycle) -> Result<(), Refusal> {
         self.exists(offset)?;
-        let narrow = value & self.top();
+        let narrow = value & self.counter.top();
         match offset {
             CR1 => self.write_cr1(value, now)?,
             // Master mode and idle levels: nothing of the model listens to TRGO or outputs at rest.
@@ -348,13 +193,16 @@ impl Timer {
                 self.ccmr[(offset - CCMR1) as usize / 4] = value & 0xffff;
             }
             CCER => self.ccer = value & 0xffff,
-            CNT => self.count = narrow,
-            PSC => self.psc.write(value & 0xffff, true),
-            ARR => self.arr.write(narrow, self.cr1 & ARR_PRELOAD != 0),
+            CNT => self.counter.count = narrow,
+            PSC => self.counter.psc.write(value & 0xffff, true),
+            ARR => {
+                let preload = self.cr1 & ARR_PRELOAD != 0;
+                self.counter.arr.write(narrow, preload);
+            }
             CCR1..=CCR4 => {
                 let index = (offset - CCR1) as usize / 4;
                 let preload = self.ccmr[index / 2] >> (8 * (index % 2) + 3) & 1 != 0;
-                self.ccr[index].write(narrow, preload);
+                self.counter.ccr[index].write(narrow, preload);
             }
             BDTR => self.bdtr = value & 0xffff,
             _ if value == 0 => {}
@@ -370,10 +218,11 @@ impl Timer {
         if value & DOWN_OR_CENTRE != 0 {
             return self.refuse("counting down or centre-aligned", value);
         }
-        if self.cr1 & ENABLE == 0 {
-            self.since = now;
-        }
-        self.cr1 = value & CR1_WRITABLE;
+        // CEN lives in the counter, which may clear it.
+        self.cr1 = value & CR1_WRITABLE & !ENABLE;
+        self.counter.enable(value & ENABLE != 0, now);
+        self.counter.update_disabled = value & UPDATE_DISABLE != 0;
+        self.counter.one_pulse = value & ONE_PULSE != 0;
         Ok(())
     }
 
@@ -383,13 +232,9 @@ impl Timer {
         }
         self.sr |= value & INTERRUPTS & !UPDATE;
         if value & UPDATE != 0 {
-            self.count = 0;
-            self.since = now;
-            if self.cr1 & UPDATE_DISABLE == 0 {
-                self.update();
-                if self.cr1 & UPDATE_BY_OVERFLOW_ONLY == 0 {
-                    self.sr |= UPDATE;
-                }
+            self.counter.restart(now);
+            if self.cr1 & (UPDATE_DISABLE | UPDATE_BY_OVERFLOW_ONLY) == 0 {
+                self.sr |= UPDATE;
             }
         }
         Ok(())
@@ -428,6 +273,24 @@ impl Timer {
             what,
             value,
         })
+    }
+}
+
+/// Compare channels of timer `number`.
+fn channels(number: u8) -> usize {
+    match number {
+        6 | 7 => 0,
+        10 | 11 | 13 | 14 => 1,
+        9 | 12 => 2,
+        _ => 4,
+    }
+}
+
+/// The largest value of timer `number`: TIM2 and TIM5 are 32 bits wide.
+fn top(number: u8) -> u32 {
+    match number {
+        2 | 5 => u32::MAX,
+        _ => 0xffff,
     }
 }
 
