@@ -1,5 +1,19 @@
 //! The rig: flies the firmware in closed loop, on an emulated board or natively, and reports.
+//!
+//! ```text
+//! scenario -> flight loop <-> board (emulated or native)
+//!                |
+//!             record -> summary, report, folder
+//! ```
 
+pub mod board;
+pub mod cli;
+pub mod flight;
+pub mod folder;
+pub mod homing_check;
+pub mod image;
+pub mod metrics;
 pub mod record;
 pub mod report;
+pub mod scenario;
 pub mod summary;

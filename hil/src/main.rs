@@ -1,2 +1,7 @@
 //! The command `hil`.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    hil::cli::main()
+}

@@ -81,6 +81,6 @@ pub struct FirmwareFigures {
     pub flash_bytes: u32,
     /// Bytes of static RAM.
     pub ram_bytes: u32,
-    /// Deepest stack of this flight, bytes.
-    pub stack_peak_bytes: u32,
+    /// Deepest stack of this flight, bytes; none where it reached into static RAM.
+    pub stack_peak_bytes: Option<u32>,
 }

@@ -7,4 +7,5 @@ mod flying;
 pub mod stabiliser;
 pub mod vehicle;
 
+pub use flying::FlyingDetector;
 pub use stabiliser::Stabiliser;

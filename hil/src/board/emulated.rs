@@ -1,0 +1,197 @@
+//! The emulated board: the image that would be flashed, on an STM32F407 in software.
+
+use defmt_decoder::Table;
+use emulator::image::Image;
+use emulator::machine::Machine;
+use emulator::time::Nanos;
+use fake_sensors::camera::Pose;
+
+use super::camera::Camera;
+use super::firmware_log::{self, LogDecoder};
+use super::rtt::UpChannel;
+use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog};
+
+/// The crystal on the flight board, hertz.
+const CRYSTAL_HZ: u32 = 8_000_000;
+/// The UART that the autopilot is on.
+const LINK_USART: u8 = 2;
+/// From power-on to the first camera frame; a healthy board needs some 50 ms.
+const FIRST_FRAME_TIMEOUT: Nanos = Nanos::from_millis(1_000);
+/// From the end of a frame to the end of its processing, at most, milliseconds.
+const FRAME_GRACE_MS: u32 = 10;
+const MILLISECOND: Nanos = Nanos::from_millis(1);
+
+/// The function whose cycles are a frame's cycles.
+const VISION_FUNCTION: &str = "vision_frame";
+
+/// An image and its log table; boards borrow it.
+#[derive(Debug)]
+pub struct Firmware {
+    image: Image,
+    table: Table,
+}
+
+impl Firmware {
+    /// Reads an ELF file.
+    pub fn parse(elf: &[u8]) -> Result<Self, BoardError> {
+        Ok(Self {
+            image: Image::parse(elf)?,
+            table: firmware_log::table(elf)?,
+        })
+    }
+
+    /// Bytes of flash.
+    pub fn flash_bytes(&self) -> u32 {
+        self.image.flash_bytes()
+    }
+
+    /// Bytes of static RAM.
+    pub fn static_ram_bytes(&self) -> u32 {
+        self.image.static_ram_bytes()
+    }
+}
+
+/// An STM32F407 with a camera, in flight.
+pub struct Emulated<'f> {
+    machine: Machine<Camera>,
+    channel: Option<UpChannel>,
+    decoder: LogDecoder<'f>,
+    log: Vec<FirmwareLog>,
+    bytes: Vec<u8>,
+    traced_cycles: Vec<u32>,
+    vision: u32,
+    /// How far the flight has come on the board's clock.
+    clock: Nanos,
+    /// Cycles asleep and in all when the flight began: the boot is not part of its load.
+    epoch: (u64, u64),
+}
+
+impl<'f> Emulated<'f> {
+    /// Switches a board on and waits until its camera sends; then the flight's time is zero, and
+    /// stands where the native board's does: [`CAMERA_LEAD_NS`] after the start of the first frame.
+    pub fn boot(firmware: &'f Firmware, camera: Camera) -> Result<Self, BoardError> {
+        let vision = firmware
+            .image
+            .symbol(VISION_FUNCTION)
+            .ok_or(BoardError::NoSymbol(VISION_FUNCTION))?
+            .address;
+        let mut machine = Machine::new(&firmware.image, CRYSTAL_HZ, camera)?;
+        machine.trace_calls(vision);
+        let mut board = Self {
+            channel: UpChannel::of(&firmware.image),
+            decoder: LogDecoder::new(&firmware.table),
+            log: Vec::new(),
+            bytes: Vec::new(),
+            traced_cycles: Vec::new(),
+            vision,
+            clock: Nanos(0),
+            epoch: (0, 0),
+            machine,
+        };
+        if !board
+            .machine
+            .run_while(FIRST_FRAME_TIMEOUT, |camera| camera.frames_started() == 0)?
+        {
+            return Err(board.no_frame());
+        }
+        board.clock = board.machine.now() + Nanos(CAMERA_LEAD_NS);
+        board.machine.run_until(board.clock)?;
+        board.epoch = (board.machine.idle_cycles(), board.machine.cycles());
+        Ok(board)
+    }
+
+    fn no_frame(&mut self) -> BoardError {
+        let mut lines = String::new();
+        match self.read_log() {
+            Ok(()) => {
+                for record in &self.log {
+                    if let FirmwareLog::Line { level, text } = record {
+                        lines += &format!("  {level} {text}\n");
+                    }
+                }
+            }
+            Err(error) => lines = error.to_string(),
+        }
+        BoardError::NoFrame {
+            seconds: FIRST_FRAME_TIMEOUT.as_secs_f64(),
+            log: lines,
+        }
+    }
+
+    fn read_log(&mut self) -> Result<(), BoardError> {
+        let Some(channel) = self.channel else {
+            return Ok(());
+        };
+        self.bytes.clear();
+        channel.drain(self.machine.memory_mut(), &mut self.bytes);
+        if self.bytes.is_empty() {
+            return Ok(());
+        }
+        self.decoder.decode(&self.bytes, &mut self.log)
+    }
+
+    fn collect_calls(&mut self) {
+        let vision = self.vision;
+        let calls = self
+            .machine
+            .take_calls()
+            .into_iter()
+            .filter(|call| call.address == vision);
+        self.traced_cycles
+            .extend(calls.map(|call| (call.returned - call.entered) as u32));
+    }
+}
+
+impl Board for Emulated<'_> {
+    fn name(&self) -> &'static str {
+        "emulator"
+    }
+
+    fn look_from(&mut self, pose: Pose) {
+        self.machine.wiring_mut().look_from(pose);
+    }
+
+    fn transmit(&mut self, bytes: &[u8]) {
+        self.machine.usart_send(LINK_USART, self.clock, bytes);
+    }
+
+    fn advance(&mut self) -> Result<(), BoardError> {
+        self.clock = self.clock + MILLISECOND;
+        self.machine.run_until(self.clock)?;
+        self.collect_calls();
+        self.read_log()
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        into.extend(
+            self.machine
+                .usart_received(LINK_USART)
+                .into_iter()
+                .map(|(_, byte)| byte),
+        );
+    }
+
+    fn drain_log(&mut self, into: &mut Vec<FirmwareLog>) {
+        into.append(&mut self.log);
+    }
+
+    fn finish(&mut self) -> Result<BoardFigures, BoardError> {
+        // A frame may have been captured this very moment: it is processed before the next ends.
+        for _ in 0..FRAME_GRACE_MS {
+            if self.machine.wiring().frames_sent() > self.traced_cycles.len() as u64 {
+                self.advance()?;
+            }
+        }
+        let (idle, all) = self.epoch;
+        let idle = self.machine.idle_cycles() - idle;
+        let all = self.machine.cycles() - all;
+        Ok(BoardFigures {
+            frames_sent: self.machine.wiring().frames_sent(),
+            frames_captured: self.machine.dcmi_counters().frames_captured,
+            frames_processed: self.traced_cycles.len() as u64,
+            traced_cycles: std::mem::take(&mut self.traced_cycles),
+            cpu_load: Some(1.0 - idle as f64 / all.max(1) as f64),
+            stack_peak_bytes: self.machine.stack_peak_bytes(),
+        })
+    }
+}

@@ -1,0 +1,133 @@
+//! The native board: the firmware's pure logic compiled for this machine, with the wires' and the
+//! camera's timing kept so that it sees what the emulated board sees, in the same order.
+
+use fake_sensors::camera::Pose;
+use link::Parser;
+use pilot::{Outbox, Pilot};
+
+use super::camera::{Camera, LAST_LINE};
+use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog, FrameLog};
+
+/// The sensor's clock on the flight board, hertz.
+pub const EXTCLK_HZ: u32 = 21_000_000;
+
+/// The pilot on a board without a processor.
+pub struct Native {
+    pilot: Pilot,
+    parser: Parser,
+    camera: Camera,
+    elapsed_ms: u64,
+    /// Bytes that are on the wire to the firmware.
+    inbound: Vec<u8>,
+    outbound: Vec<u8>,
+    outbox: Outbox,
+    log: Vec<FirmwareLog>,
+    frames_processed: u64,
+}
+
+impl Native {
+    /// A board that has just been switched on. `camera` must be streaming since its time zero.
+    pub fn new(pilot: Pilot, camera: Camera) -> Self {
+        Self {
+            pilot,
+            parser: Parser::new(),
+            camera,
+            elapsed_ms: 0,
+            inbound: Vec::new(),
+            outbound: Vec::new(),
+            outbox: Outbox::new(),
+            log: Vec::new(),
+            frames_processed: 0,
+        }
+    }
+
+    /// Messages of this millisecond. They are through a third of it (28 bytes of a STATE at
+    /// 921600 baud are 0.3 ms); the camera's edges of the same millisecond come later, see
+    /// [`CAMERA_LEAD_NS`].
+    fn hear(&mut self) {
+        let now_ms = self.elapsed_ms as u32;
+        let Self {
+            parser,
+            pilot,
+            outbox,
+            inbound,
+            ..
+        } = self;
+        for frame in parser.frames(inbound) {
+            pilot.on_message(now_ms, &frame.message, outbox);
+        }
+        self.inbound.clear();
+        self.outbound.extend_from_slice(self.outbox.bytes());
+        self.outbox.clear();
+    }
+
+    /// Camera edges up to the end of this millisecond.
+    fn see(&mut self) {
+        let until_ns = (self.elapsed_ms + 1) * 1_000_000 + CAMERA_LEAD_NS;
+        while let Some(due_ns) = self
+            .camera
+            .chip()
+            .next_edge()
+            .filter(|due_ns| *due_ns < until_ns)
+        {
+            if self.camera.take_edge(due_ns) == Some(LAST_LINE) {
+                self.process_frame(due_ns);
+            }
+        }
+    }
+
+    fn process_frame(&mut self, now_ns: u64) {
+        let report = self.pilot.on_frame(self.camera.frame());
+        self.frames_processed += 1;
+        if let Some(exposure) = report.exposure {
+            self.camera
+                .chip()
+                .write_exposure(now_ns, exposure.shutter_lines, exposure.gain);
+        }
+        let wanted = self.pilot.exposure();
+        self.log.push(FirmwareLog::Frame(FrameLog {
+            cycles: None,
+            luma: report.mean_luma,
+            lines: wanted.shutter_lines,
+            gain: wanted.gain,
+        }));
+    }
+}
+
+impl Board for Native {
+    fn name(&self) -> &'static str {
+        "native"
+    }
+
+    fn look_from(&mut self, pose: Pose) {
+        self.camera.look_from(pose);
+    }
+
+    fn transmit(&mut self, bytes: &[u8]) {
+        self.inbound.extend_from_slice(bytes);
+    }
+
+    fn advance(&mut self) -> Result<(), BoardError> {
+        self.hear();
+        self.see();
+        self.elapsed_ms += 1;
+        Ok(())
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        into.append(&mut self.outbound);
+    }
+
+    fn drain_log(&mut self, into: &mut Vec<FirmwareLog>) {
+        into.append(&mut self.log);
+    }
+
+    fn finish(&mut self) -> Result<BoardFigures, BoardError> {
+        Ok(BoardFigures {
+            frames_sent: self.camera.frames_sent(),
+            frames_captured: self.frames_processed,
+            frames_processed: self.frames_processed,
+            ..BoardFigures::default()
+        })
+    }
+}

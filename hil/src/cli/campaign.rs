@@ -1,0 +1,187 @@
+//! `hil campaign`: many seeds of one scenario on the native backend, and their statistics.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::Failure;
+use super::console::Console;
+use super::fly::ScenarioArguments;
+use crate::flight::{self, FlightError};
+use crate::metrics::quantile;
+use crate::scenario::{Homing, Scenario};
+use crate::summary::Summary;
+
+/// Closer than this to the true start counts as home, metres (the radius within which 8 of 9 homing
+/// runs of the paper ended, Fig. 4).
+const HOME_RADIUS_M: f64 = 0.5;
+
+/// Options of `hil campaign`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    hil campaign                          20 seeds of the U\n  \
+    hil campaign --compare                the same seeds with odometry alone as well\n  \
+    hil campaign --route s --seeds 100 --json")]
+pub struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioArguments,
+    /// How many seeds
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..))]
+    seeds: u64,
+    /// The first seed
+    #[arg(long, default_value_t = 1)]
+    first: u64,
+    /// Flies each seed with odometry alone as well
+    #[arg(long)]
+    compare: bool,
+    /// Ends with one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// Statistics of one setting over all seeds.
+#[derive(Debug, Serialize)]
+struct Statistics {
+    homing: &'static str,
+    flights: usize,
+    completed: usize,
+    within_half_a_metre: usize,
+    mean_home_error_m: f64,
+    p50_home_error_m: f64,
+    p95_home_error_m: f64,
+    mean_cross_track_rms_m: f64,
+    mean_bytes_per_m: f64,
+    home_errors_m: Vec<f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct Outcome {
+    first_seed: u64,
+    settings: Vec<Statistics>,
+    /// Mean home error with odometry alone over that with homing; only with `--compare`.
+    improvement: Option<f64>,
+}
+
+pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
+    let mut settings = vec![fly_all(arguments, arguments.scenario.homing, console)?];
+    if arguments.compare {
+        settings.push(fly_all(arguments, Homing::Odometry, console)?);
+    }
+    let improvement = match settings.as_slice() {
+        [with, without] => Some(without.mean_home_error_m / with.mean_home_error_m),
+        _ => None,
+    };
+    let all_completed = settings[0].completed == settings[0].flights;
+    let outcome = Outcome {
+        first_seed: arguments.first,
+        settings,
+        improvement,
+    };
+    if arguments.json {
+        println!("{}", serde_json::to_string(&outcome)?);
+    } else {
+        print(&outcome);
+    }
+    Ok(all_completed)
+}
+
+/// Flies every seed, one flight per processor at a time. The results do not depend on how the
+/// flights are shared out.
+fn fly_all(
+    arguments: &Arguments,
+    homing: Homing,
+    console: &Console,
+) -> Result<Statistics, FlightError> {
+    let seeds: Vec<u64> = (arguments.first..).take(arguments.seeds as usize).collect();
+    let mut progress = console.progress("Flying", arguments.seeds);
+    let next = AtomicUsize::new(0);
+    let (sender, receiver) = mpsc::channel();
+    let mut results: Vec<_> = std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            let (sender, next, seeds) = (sender.clone(), &next, &seeds);
+            scope.spawn(move || {
+                while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let scenario = Scenario {
+                        homing,
+                        ..arguments.scenario.scenario(seed)
+                    };
+                    let summary =
+                        flight::fly_native(&scenario, &mut |_| ()).map(|flown| flown.summary);
+                    if sender.send((seed, summary)).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        let count = |done: usize| {
+            format!(
+                "{} of {} flights, homing: {}",
+                done,
+                seeds.len(),
+                homing.name()
+            )
+        };
+        receiver
+            .iter()
+            .enumerate()
+            .inspect(|(done, _)| progress.set(*done as u64 + 1, || count(done + 1)))
+            .map(|(_, result)| result)
+            .collect()
+    });
+    progress.finish();
+    results.sort_by_key(|(seed, _)| *seed);
+    let summaries = results
+        .into_iter()
+        .map(|(_, summary)| summary)
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(statistics(homing, &summaries))
+}
+
+fn statistics(homing: Homing, summaries: &[Summary]) -> Statistics {
+    let mean =
+        |of: fn(&Summary) -> f64| summaries.iter().map(of).sum::<f64>() / summaries.len() as f64;
+    let home_errors_m: Vec<f64> = summaries
+        .iter()
+        .map(|summary| summary.home_error_m)
+        .collect();
+    let mut sorted = home_errors_m.clone();
+    sorted.sort_by(f64::total_cmp);
+    Statistics {
+        homing: homing.name(),
+        flights: summaries.len(),
+        completed: summaries.iter().filter(|summary| summary.completed).count(),
+        within_half_a_metre: sorted.partition_point(|error| *error <= HOME_RADIUS_M),
+        mean_home_error_m: mean(|summary| summary.home_error_m),
+        p50_home_error_m: quantile(&sorted, 0.5),
+        p95_home_error_m: quantile(&sorted, 0.95),
+        mean_cross_track_rms_m: mean(|summary| summary.cross_track_rms_m),
+        mean_bytes_per_m: mean(|summary| summary.bytes_per_m),
+        home_errors_m,
+    }
+}
+
+fn print(outcome: &Outcome) {
+    println!(
+        "homing     flights  completed  <= 0.5 m   mean m    p50 m    p95 m  path rms m  bytes/m"
+    );
+    for row in &outcome.settings {
+        println!(
+            "{:<10} {:>7}  {:>9}  {:>8} {:>8.2} {:>8.2} {:>8.2} {:>11.2} {:>8.1}",
+            row.homing,
+            row.flights,
+            row.completed,
+            row.within_half_a_metre,
+            row.mean_home_error_m,
+            row.p50_home_error_m,
+            row.p95_home_error_m,
+            row.mean_cross_track_rms_m,
+            row.mean_bytes_per_m
+        );
+    }
+    if let Some(improvement) = outcome.improvement {
+        println!("homing makes the mean home error {improvement:.1} times smaller");
+    }
+}

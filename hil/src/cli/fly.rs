@@ -1,0 +1,204 @@
+//! `hil fly`: one flight, its folder and its summary.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, ValueEnum};
+
+use super::Failure;
+use super::console::Console;
+use crate::flight::{self, FlightError, Flown, Progress};
+use crate::folder;
+use crate::image;
+use crate::scenario::{Homing, Route, Scenario, Spacing};
+use crate::summary::Summary;
+
+/// The board a flight is flown on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// The image that would be flashed, on an emulated STM32F407
+    #[default]
+    Emulator,
+    /// The same logic compiled for this machine: faster, without timing
+    Native,
+}
+
+/// What is to be flown; shared by `fly` and `campaign`.
+#[derive(Clone, Debug, Args)]
+pub struct ScenarioArguments {
+    /// The way out
+    #[arg(long, value_enum, default_value_t)]
+    pub route: Route,
+    /// The world
+    #[arg(long, default_value = "arena-panels", value_parser = PossibleValuesParser::new(fake_sensors::world::WORLD_NAMES))]
+    pub world: String,
+    /// Metres between snapshots
+    #[arg(long, default_value = "2", value_parser = parse_spacing, value_name = "METRES")]
+    pub spacing: Spacing,
+    /// How the drone finds back
+    #[arg(long, value_enum, default_value_t)]
+    pub homing: Homing,
+}
+
+impl ScenarioArguments {
+    /// The scenario of one seed.
+    pub fn scenario(&self, seed: u64) -> Scenario {
+        Scenario {
+            route: self.route,
+            world: self.world.clone(),
+            seed,
+            spacing: self.spacing,
+            homing: self.homing,
+        }
+    }
+}
+
+fn parse_spacing(text: &str) -> Result<Spacing, String> {
+    text.parse()
+        .ok()
+        .and_then(Spacing::from_metres)
+        .ok_or_else(|| "a distance from 0.2 to 10 metres; the paper flies 1 or 2".to_owned())
+}
+
+/// Options of `hil fly`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    cargo fly                                   the paper's U on the emulated board\n  \
+    cargo fly --backend native --seed 7         the same logic, without a processor\n  \
+    cargo fly --route s --spacing 1 --json      one JSON object on stdout\n\n\
+    Exit code 0: the drone came home. 1: it did not. 2: the flight could not be flown.")]
+pub struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioArguments,
+    /// The board
+    #[arg(long, value_enum, default_value_t)]
+    backend: Backend,
+    /// Seed of world, sensors and camera noise
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Folder for summary.json, flight.log, recording.json and report.html [default: flights/ROUTE-BACKEND-SEED]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Ends with one JSON object, the summary, on stdout
+    #[arg(long)]
+    json: bool,
+    /// An image that is already built
+    #[arg(long, value_name = "ELF")]
+    firmware: Option<PathBuf>,
+}
+
+pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
+    let scenario = arguments.scenario.scenario(arguments.seed);
+    let flown = match arguments.backend {
+        Backend::Native => {
+            with_progress(console, |progress| flight::fly_native(&scenario, progress))?
+        }
+        Backend::Emulator => {
+            let elf = match &arguments.firmware {
+                Some(elf) => elf.clone(),
+                None => image::build(&|line| console.status("Firmware", line))?,
+            };
+            let bytes =
+                std::fs::read(&elf).map_err(|error| format!("{}: {error}", elf.display()))?;
+            with_progress(console, |progress| {
+                flight::fly_emulated(&scenario, &bytes, progress)
+            })?
+        }
+    };
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| folder::default_path(&flown.summary));
+    folder::write(&out, &flown).map_err(|error| format!("{}: {error}", out.display()))?;
+    console.status("Report", &out.join("report.html").display().to_string());
+    if arguments.json {
+        println!("{}", serde_json::to_string(&flown.summary)?);
+    } else {
+        print(&flown.summary);
+    }
+    Ok(flown.summary.completed)
+}
+
+/// Flies with a progress bar.
+fn with_progress(
+    console: &Console,
+    fly: impl FnOnce(&mut dyn FnMut(Progress)) -> Result<Flown, FlightError>,
+) -> Result<Flown, FlightError> {
+    let mut bar = console.progress("Flying", 1000);
+    let result = fly(&mut |progress: Progress| {
+        bar.set((1000.0 * progress.fraction) as u64, || progress.to_string());
+    });
+    bar.finish();
+    result
+}
+
+/// The summary for people.
+fn print(summary: &Summary) {
+    let verdict = if summary.completed {
+        "home"
+    } else {
+        "NOT HOME"
+    };
+    println!("{verdict}: {}", summary.outcome);
+    let row = |name: &str, value: String| println!("  {name:<22}{value}");
+    row(
+        "home error",
+        format!(
+            "{:.2} m (odometry alone: {:.2} m)",
+            summary.home_error_m, summary.odometry_only_error_m
+        ),
+    );
+    row(
+        "cross-track error",
+        format!("{:.2} m rms", summary.cross_track_rms_m),
+    );
+    row(
+        "flown",
+        format!(
+            "{:.1} m out, {:.1} m back, {:.0} s",
+            summary.outbound_m, summary.inbound_m, summary.flight_s
+        ),
+    );
+    row(
+        "route memory",
+        format!(
+            "{} snapshots, {} bytes, {:.1} bytes/m",
+            summary.snapshots, summary.memory_bytes, summary.bytes_per_m
+        ),
+    );
+    row(
+        "frames",
+        format!(
+            "{} captured of {} sent, {} dropped",
+            summary.frames_captured, summary.frames_sent, summary.frames_dropped
+        ),
+    );
+    if let Some(cycles) = &summary.cycles_per_frame {
+        row(
+            "cycles per frame",
+            format!("p50 {}, p99 {}, max {}", cycles.p50, cycles.p99, cycles.max),
+        );
+    }
+    if let Some(load) = summary.cpu_load {
+        row("processor load", format!("{:.1} %", 100.0 * load));
+    }
+    if let Some(firmware) = &summary.firmware {
+        let stack = firmware
+            .stack_peak_bytes
+            .map_or("overflown".to_owned(), |bytes| format!("{bytes} B"));
+        row(
+            "firmware",
+            format!(
+                "{} B flash, {} B static RAM, {stack} stack",
+                firmware.flash_bytes, firmware.ram_bytes
+            ),
+        );
+    }
+    row(
+        "speed",
+        format!(
+            "{:.0}x real time ({:.1} s)",
+            summary.realtime_factor, summary.wall_s
+        ),
+    );
+}

@@ -1,0 +1,63 @@
+//! The command line: verbs, their options, and exit codes that a CI can use.
+//!
+//! 0: what was asked for is true. 1: it is not (a flight that does not come home, a record that
+//! does not hold). 2: it could not be done (wrong options, no compiler, a chip that stopped).
+
+mod campaign;
+mod console;
+mod fly;
+mod homing_check;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use console::Console;
+
+/// The rig of Cataglyphis: flies the firmware in closed loop and reports.
+#[derive(Debug, Parser)]
+#[command(name = "hil", version, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Flies a route out and back and writes a report
+    Fly(fly::Arguments),
+    /// Flies many seeds and prints their statistics
+    Campaign(campaign::Arguments),
+    /// Builds the firmware with whatever toolchain there is, and says which
+    Build,
+    /// Holds the homing against a file of solved problems
+    HomingCheck(homing_check::Arguments),
+}
+
+/// Why a verb could not be carried out.
+type Failure = Box<dyn std::error::Error>;
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let console = Console::new();
+    let result = match Cli::parse().verb {
+        Verb::Fly(arguments) => fly::run(&arguments, &console),
+        Verb::Campaign(arguments) => campaign::run(&arguments, &console),
+        Verb::Build => build(&console),
+        Verb::HomingCheck(arguments) => homing_check::run(&arguments),
+    };
+    match result {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(failure) => {
+            console.error(&failure.to_string());
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn build(console: &Console) -> Result<bool, Failure> {
+    let image = crate::image::build(&|line| console.status("Firmware", line))?;
+    println!("{}", image.display());
+    Ok(true)
+}

@@ -1,0 +1,201 @@
+//! All that flies and is not the camera board: vehicle, motion sensors, filter, controllers and the
+//! flight app.
+
+use autopilot::app::{self, FlightApp, Script, Settings};
+use autopilot::controller::{ControllerParameters, MotorCommands, SetPoint};
+use autopilot::ekf::{self, Ekf, Estimate, ImuSample, Measurement};
+use autopilot::vehicle::{PAPER_MASS_KG, Truth, Vehicle, VehicleParameters};
+use autopilot::{FlyingDetector, Stabiliser};
+use fake_sensors::camera;
+use fake_sensors::motion::{MotionReadings, MotionSensors, MotionTruth, SensorModel};
+use link::Message;
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::record::PlanarPose;
+use crate::scenario::Scenario;
+
+/// How high the camera looks out above the drone's feet, metres.
+const CAMERA_HEIGHT_M: f32 = 0.04;
+
+/// Where things stand at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Glimpse {
+    /// Where the drone is.
+    pub truth: PlanarPose,
+    /// Where its filter believes it is.
+    pub estimate: PlanarPose,
+    /// Where the same filter without the camera's corrections believes it is.
+    pub uncorrected: PlanarPose,
+    /// Height above the ground, metres.
+    pub height_m: f64,
+}
+
+/// A Crazyflie without its camera board.
+#[derive(Debug)]
+pub struct Aircraft {
+    vehicle: Vehicle,
+    sensors: MotionSensors,
+    stabiliser: Stabiliser,
+    app: FlightApp,
+    /// The filter's twin: fed with the same sensors, never corrected.
+    uncorrected: Ekf,
+    flying: FlyingDetector,
+    motors: MotorCommands,
+    /// What the app asked of the filter, for its next tick.
+    measurements: Vec<Measurement>,
+    reset_filter: bool,
+    set_point: SetPoint,
+}
+
+impl Aircraft {
+    /// On the ground at the start of the route, facing north.
+    pub fn new(scenario: &Scenario, route: &app::Route) -> Self {
+        let filter = ekf::Parameters::default();
+        let spacing = [scenario.spacing.decimetres()];
+        let script = Script::record_and_return(route, scenario.homing.record(), &spacing);
+        Self {
+            vehicle: Vehicle::standing_at(
+                VehicleParameters::crazyflie_brushless(PAPER_MASS_KG),
+                Vector3::zeros(),
+                0.0,
+            ),
+            sensors: MotionSensors::new(&SensorModel::default(), scenario.seed),
+            stabiliser: Stabiliser::new(filter, &ControllerParameters::default(), 0),
+            app: FlightApp::new(script, Settings::default()),
+            uncorrected: Ekf::new(filter, 0),
+            flying: FlyingDetector::default(),
+            motors: MotorCommands::STOPPED,
+            measurements: Vec::new(),
+            reset_filter: false,
+            set_point: SetPoint::MotorsOff,
+        }
+    }
+
+    /// One millisecond: `received` is what came from the camera board since the last call. Returns
+    /// what goes to it.
+    pub fn tick(&mut self, now_ms: u64, received: &[u8]) -> Vec<u8> {
+        let readings = self.sensors.tick(&motion_truth(self.vehicle.truth()));
+        self.filter(now_ms, &readings);
+        let output = self.app.tick(now_ms, &self.stabiliser.estimate(), received);
+        self.measurements = output.measurements;
+        self.reset_filter = output.reset_filter;
+        self.set_point = output.set_point;
+        self.vehicle.step(&self.motors);
+        output.transmit
+    }
+
+    /// Sensors, filter and controllers.
+    fn filter(&mut self, now_ms: u64, readings: &MotionReadings) {
+        if std::mem::take(&mut self.reset_filter) {
+            self.stabiliser.request_filter_reset();
+            self.uncorrected.request_reset();
+        }
+        let imu = ImuSample {
+            gyro_deg_s: readings.imu.gyro_deg_s,
+            acc_g: readings.imu.acc_g,
+        };
+        let sensed = sensed(readings);
+        // The same rule on the same commands as in the filter that is corrected.
+        let flying = self.flying.update(now_ms, &self.motors);
+        for measurement in imu.measurements().iter().chain(&sensed) {
+            // Three or four of twenty places: the queue is drained every tick.
+            let _ = self.uncorrected.enqueue(*measurement);
+        }
+        self.uncorrected.tick(now_ms, flying);
+        let mut measurements = sensed;
+        measurements.append(&mut self.measurements);
+        self.motors = self
+            .stabiliser
+            .tick(now_ms, &imu, &measurements, &self.set_point);
+    }
+
+    /// Where the camera is.
+    pub fn camera_pose(&self) -> camera::Pose {
+        let truth = self.vehicle.truth();
+        let attitude = truth.attitude.cast::<f32>();
+        let above_feet = Vector3::new(0.0, 0.0, CAMERA_HEIGHT_M);
+        camera::Pose {
+            position_m: truth.position_m.cast() + attitude * above_feet,
+            attitude,
+        }
+    }
+
+    /// What the app is doing.
+    pub fn phase(&self) -> app::Phase {
+        self.app.phase()
+    }
+
+    /// The messages that the app has taken from its UART since the last call.
+    pub fn take_received(&mut self) -> impl Iterator<Item = Message> + use<> {
+        self.app
+            .take_received()
+            .into_iter()
+            .map(|received| received.message)
+    }
+
+    /// Where things stand.
+    pub fn glimpse(&self) -> Glimpse {
+        let truth = self.vehicle.truth();
+        Glimpse {
+            truth: PlanarPose {
+                x: truth.position_m.x,
+                y: truth.position_m.y,
+                yaw: yaw(&truth.attitude),
+            },
+            estimate: planar(&self.stabiliser.estimate()),
+            uncorrected: planar(&self.uncorrected.estimate()),
+            height_m: truth.position_m.z,
+        }
+    }
+}
+
+/// The camera of a drone that stands at the start of the route, facing north.
+pub fn pose_on_the_ground() -> camera::Pose {
+    camera::Pose {
+        position_m: Vector3::new(0.0, 0.0, CAMERA_HEIGHT_M),
+        attitude: UnitQuaternion::identity(),
+    }
+}
+
+fn motion_truth(truth: &Truth) -> MotionTruth {
+    MotionTruth {
+        position_m: truth.position_m,
+        velocity_m_s: truth.velocity_m_s,
+        attitude: truth.attitude,
+        angular_rate_rad_s: truth.angular_rate_rad_s,
+        specific_force_m_s2: truth.specific_force_m_s2,
+    }
+}
+
+/// What the deck's sensors have for the filter.
+fn sensed(readings: &MotionReadings) -> Vec<Measurement> {
+    let flow = readings.flow.map(|flow| {
+        let counts = flow.counts.map(f32::from);
+        Measurement::Flow(ekf::Flow {
+            counts,
+            dt_s: flow.dt_s,
+            sd_counts: flow.sd_counts,
+        })
+    });
+    let range = readings.range.map(|range| {
+        Measurement::Range(ekf::Range {
+            distance_m: range.distance_m,
+            sd_m: range.sd_m,
+        })
+    });
+    flow.into_iter().chain(range).collect()
+}
+
+fn planar(estimate: &Estimate) -> PlanarPose {
+    PlanarPose {
+        x: estimate.position_m.x.into(),
+        y: estimate.position_m.y.into(),
+        yaw: estimate.yaw_rad().into(),
+    }
+}
+
+/// Heading of an attitude, radians, counter-clockwise from north.
+fn yaw(attitude: &UnitQuaternion<f64>) -> f64 {
+    let forward = attitude * Vector3::x();
+    libm::atan2(forward.y, forward.x)
+}

@@ -1,0 +1,174 @@
+//! The flight loop: vehicle, sensors, autopilot and board, a millisecond at a time.
+//!
+//! One loop, no threads, no wall clock: the same scenario is the same flight on every machine.
+
+mod aircraft;
+mod recorder;
+mod sum_up;
+
+use std::fmt;
+use std::time::Instant;
+
+use autopilot::app;
+use fake_sensors::camera::tcm8230::Tcm8230;
+use fake_sensors::camera::{PanoramicCamera, PanoramicLens};
+use fake_sensors::world::{UnknownWorld, World};
+use pilot::Pilot;
+
+use crate::board::camera::Camera;
+use crate::board::emulated::{Emulated, Firmware};
+use crate::board::native::{EXTCLK_HZ, Native};
+use crate::board::{Board, BoardError};
+use crate::record::Recording;
+use crate::scenario::Scenario;
+use crate::summary::Summary;
+
+use aircraft::Aircraft;
+use recorder::Recorder;
+
+/// How often progress is reported, milliseconds of flight.
+const PROGRESS_PERIOD_MS: u64 = 500;
+
+/// A flight that has ended, well or badly.
+#[derive(Clone, Debug)]
+pub struct Flown {
+    /// Its figures.
+    pub summary: Summary,
+    /// Everything that happened.
+    pub recording: Recording,
+}
+
+/// A flight that could not be flown.
+#[derive(Debug, thiserror::Error)]
+pub enum FlightError {
+    /// There is no such world.
+    #[error(transparent)]
+    World(#[from] UnknownWorld),
+    /// The board cannot go on.
+    #[error(transparent)]
+    Board(#[from] BoardError),
+}
+
+/// How far a flight has come.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Share of the expected flight time, 0..=1.
+    pub fraction: f64,
+    /// Flight time, seconds.
+    pub flight_s: f64,
+    /// What the app is doing.
+    pub phase: app::Phase,
+    /// Seconds of flight per second of wall time.
+    pub realtime_factor: f64,
+}
+
+impl fmt::Display for Progress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let phase = match self.phase {
+            app::Phase::Ground | app::Phase::TakeOff => "taking off",
+            app::Phase::Recording => "recording the route",
+            app::Phase::Following => "following it home",
+            app::Phase::Landing | app::Phase::Landed(_) => "landing",
+        };
+        write!(
+            f,
+            "{:4.0} s, {phase}, {:.0}x real time",
+            self.flight_s, self.realtime_factor
+        )
+    }
+}
+
+/// Flies a scenario with the firmware's logic compiled for this machine.
+pub fn fly_native(
+    scenario: &Scenario,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Flown, FlightError> {
+    let started = Instant::now();
+    let parameters = pilot::Parameters::DEFAULT;
+    let pilot = Pilot::new(&parameters).map_err(BoardError::Calibration)?;
+    let initial = pilot.exposure();
+    let chip = Tcm8230::streaming(0, EXTCLK_HZ, initial.shutter_lines, initial.gain);
+    let mut board = Native::new(pilot, camera(scenario, chip)?);
+    fly(scenario, &mut board, None, started, progress)
+}
+
+/// Flies a scenario with a firmware image on an emulated board.
+pub fn fly_emulated(
+    scenario: &Scenario,
+    elf: &[u8],
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Flown, FlightError> {
+    let started = Instant::now();
+    let firmware = Firmware::parse(elf)?;
+    let mut board = Emulated::boot(&firmware, camera(scenario, Tcm8230::default())?)?;
+    fly(scenario, &mut board, Some(&firmware), started, progress)
+}
+
+/// The camera of the drone on the ground at the start of the route.
+fn camera(scenario: &Scenario, chip: Tcm8230) -> Result<Camera, FlightError> {
+    let world = World::named(&scenario.world, scenario.seed)?;
+    let optics = PanoramicCamera::new(world, &PanoramicLens::default(), scenario.seed);
+    Ok(Camera::new(chip, optics, aircraft::pose_on_the_ground()))
+}
+
+fn fly(
+    scenario: &Scenario,
+    board: &mut dyn Board,
+    firmware: Option<&Firmware>,
+    started: Instant,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Flown, FlightError> {
+    let route = scenario.route.waypoints();
+    let expected_ms = expected_flight_ms(&route);
+    let mut aircraft = Aircraft::new(scenario, &route);
+    let mut recorder = Recorder::new(&World::named(&scenario.world, scenario.seed)?, &route);
+    let mut from_board = Vec::new();
+    let mut log = Vec::new();
+    let mut now_ms = 0;
+    let outcome = loop {
+        board.look_from(aircraft.camera_pose());
+        let to_board = aircraft.tick(now_ms, &from_board);
+        recorder.tick(now_ms, &mut aircraft);
+        board.transmit(&to_board);
+        board.advance()?;
+        from_board.clear();
+        board.receive(&mut from_board);
+        board.drain_log(&mut log);
+        recorder.log(now_ms, log.drain(..));
+        if now_ms % PROGRESS_PERIOD_MS == 0 {
+            let flight_s = now_ms as f64 / 1_000.0;
+            progress(Progress {
+                fraction: (now_ms as f64 / expected_ms).min(1.0),
+                flight_s,
+                phase: aircraft.phase(),
+                realtime_factor: flight_s / started.elapsed().as_secs_f64(),
+            });
+        }
+        now_ms += 1;
+        if let app::Phase::Landed(outcome) = aircraft.phase() {
+            break outcome;
+        }
+    };
+    let figures = board.finish()?;
+    let end = sum_up::End {
+        outcome,
+        flight_s: now_ms as f64 / 1_000.0,
+        figures,
+        backend: board.name(),
+        firmware,
+        wall: started.elapsed(),
+    };
+    let recording = recorder.finish();
+    Ok(Flown {
+        summary: sum_up::summary(scenario, &recording, end),
+        recording,
+    })
+}
+
+/// A guess for the progress bar: the way out and back at the app's cruise speed, and half as long
+/// again for way points and homing.
+fn expected_flight_ms(route: &app::Route) -> f64 {
+    const CRUISE_M_S: f64 = 0.5;
+    let both_ways_s = 2.0 * f64::from(route.length_m()) / CRUISE_M_S;
+    1.5 * 1_000.0 * both_ways_s
+}

@@ -1,0 +1,212 @@
+//! Writes down what happens, as it happens.
+
+use autopilot::app;
+use fake_sensors::world::World;
+use link::{InsCorrection, Map, Message, Source, Vector, WorldPoint, WorldPose};
+
+use super::aircraft::{Aircraft, Glimpse};
+use crate::board::FirmwareLog;
+use crate::record::{
+    CorrectionMark, FrameMark, LogLine, OdometryMark, Phase, PlanarPose, Recording, SnapshotMark,
+    TrackPoint, VectorMark, WallSegment,
+};
+
+/// A track point every 100 ms.
+const TRACK_PERIOD_MS: u64 = 100;
+/// Counts of an odometry vector per metre (paper: 0.1 m).
+const COUNTS_PER_M: f32 = 10.0;
+
+/// Collects a [`Recording`].
+#[derive(Debug)]
+pub struct Recorder {
+    recording: Recording,
+    app_phase: app::Phase,
+    /// Whether the newest vector came from homing.
+    visual: bool,
+    correction_index: Option<u16>,
+    /// Number of vectors and where they end, from the newest MAP on the way back.
+    tip: Option<(u16, WorldPoint)>,
+}
+
+impl Recorder {
+    /// Before the flight.
+    pub fn new(world: &World, route: &app::Route) -> Self {
+        let plan = world.plan().iter().map(|line| WallSegment {
+            from: line.from_m.map(f64::from),
+            to: line.to_m.map(f64::from),
+        });
+        let places = route.waypoints.iter().map(|waypoint| waypoint.place);
+        let recording = Recording {
+            plan: plan.collect(),
+            route: places
+                .map(|place| [place.x.into(), place.y.into()])
+                .collect(),
+            ..Recording::default()
+        };
+        Self {
+            recording,
+            app_phase: app::Phase::Ground,
+            visual: false,
+            correction_index: None,
+            tip: None,
+        }
+    }
+
+    /// A millisecond has passed.
+    pub fn tick(&mut self, now_ms: u64, aircraft: &mut Aircraft) {
+        let t = seconds(now_ms);
+        let glimpse = aircraft.glimpse();
+        for message in aircraft.take_received() {
+            match &message {
+                Message::Vector(vector) => self.vector(t, vector, &glimpse),
+                Message::Map(map) => self.map(t, map, &glimpse),
+                Message::InsCorrection(correction) => self.correction(t, correction, &glimpse),
+                Message::Command(_)
+                | Message::State(_)
+                | Message::Camera(_)
+                | Message::Debug(_) => {}
+            }
+        }
+        if aircraft.phase() != self.app_phase {
+            self.app_phase = aircraft.phase();
+            self.line(t, "app", "info", format!("{:?}", self.app_phase));
+        }
+        if now_ms % TRACK_PERIOD_MS == 0 {
+            self.recording.track.push(TrackPoint {
+                t,
+                phase: self.phase(),
+                truth: glimpse.truth,
+                estimate: glimpse.estimate,
+                uncorrected: glimpse.uncorrected,
+                height: glimpse.height_m,
+            });
+        }
+    }
+
+    /// What the firmware logged.
+    pub fn log(&mut self, now_ms: u64, records: impl Iterator<Item = FirmwareLog>) {
+        let t = seconds(now_ms);
+        for record in records {
+            match record {
+                FirmwareLog::Frame(frame) => self.recording.frames.push(FrameMark {
+                    t,
+                    cycles: frame.cycles,
+                    luma: frame.luma,
+                    lines: frame.lines,
+                    gain: frame.gain,
+                }),
+                FirmwareLog::Line { level, text } => self.line(t, "firmware", level, text),
+            }
+        }
+    }
+
+    /// After the flight.
+    pub fn finish(self) -> Recording {
+        self.recording
+    }
+
+    fn phase(&self) -> Phase {
+        match self.app_phase {
+            app::Phase::Recording => Phase::Outbound,
+            app::Phase::Following if self.visual => Phase::Homing,
+            app::Phase::Following => Phase::Odometry,
+            app::Phase::Ground
+            | app::Phase::TakeOff
+            | app::Phase::Landing
+            | app::Phase::Landed(_) => Phase::Ground,
+        }
+    }
+
+    fn line(&mut self, t: f64, source: &'static str, level: &str, text: String) {
+        self.recording.log.push(LogLine {
+            t,
+            source,
+            level: level.to_owned(),
+            text,
+        });
+    }
+
+    fn vector(&mut self, t: f64, vector: &Vector, glimpse: &Glimpse) {
+        let (Ok(start), Ok(target), Ok(turn)) = (vector.start(), vector.target(), vector.turn())
+        else {
+            return;
+        };
+        self.visual = vector.source() == Some(Source::Visual);
+        self.recording.vectors.push(VectorMark {
+            t,
+            visual: self.visual,
+            start: planar(start, glimpse.estimate.yaw as f32),
+            target: planar(target, turn),
+            truth: glimpse.truth,
+        });
+    }
+
+    fn map(&mut self, t: f64, map: &Map, glimpse: &Glimpse) {
+        let (Ok(snapshot), Ok(tip)) = (map.snapshot(), map.odometry()) else {
+            return;
+        };
+        if self.app_phase == app::Phase::Following {
+            self.followed(map.odometry_index, tip);
+        } else if !map.snapshot_ak_bk.is_empty() {
+            self.recording.snapshots.push(SnapshotMark {
+                t,
+                index: map.snapshot_index,
+                odometry_count: map.odometry_index,
+                believed: planar(snapshot, glimpse.estimate.yaw as f32),
+                truth: glimpse.truth,
+                coefficients: map.snapshot_ak_bk.to_vec(),
+            });
+        }
+    }
+
+    /// The stack of vectors is one shorter than before: the difference of its ends is the vector
+    /// that is gone.
+    fn followed(&mut self, count: u16, tip: WorldPoint) {
+        if let Some((before, end)) = self.tip
+            && before == count + 1
+        {
+            let counts = |metres: f32| (metres * COUNTS_PER_M).round() as i8;
+            let counts = [counts(end.x - tip.x), counts(end.y - tip.y)];
+            self.recording.odometry.push(OdometryMark {
+                index: count,
+                counts,
+            });
+        }
+        self.tip = Some((count, tip));
+    }
+
+    fn correction(&mut self, t: f64, correction: &InsCorrection, glimpse: &Glimpse) {
+        let index = correction.snapshot_index;
+        let Ok((from, to)) = correction.poses() else {
+            return;
+        };
+        // The firmware repeats a correction while it waits for it to take effect.
+        if self.correction_index.replace(index) == Some(index) {
+            return;
+        }
+        let mark = CorrectionMark {
+            t,
+            index,
+            from: pose(from),
+            to: pose(to),
+            truth: glimpse.truth,
+        };
+        self.recording.corrections.push(mark);
+    }
+}
+
+fn seconds(ms: u64) -> f64 {
+    ms as f64 / 1_000.0
+}
+
+fn planar(place: WorldPoint, yaw: f32) -> PlanarPose {
+    PlanarPose {
+        x: place.x.into(),
+        y: place.y.into(),
+        yaw: yaw.into(),
+    }
+}
+
+fn pose(pose: WorldPose) -> PlanarPose {
+    planar(pose.point(), pose.yaw)
+}

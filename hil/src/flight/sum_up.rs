@@ -1,0 +1,121 @@
+//! From what happened to the figures.
+
+use std::time::Duration;
+
+use autopilot::app::Outcome;
+
+use crate::board::BoardFigures;
+use crate::board::emulated::Firmware;
+use crate::metrics::{self, quantile};
+use crate::record::Recording;
+use crate::scenario::Scenario;
+use crate::summary::{CyclesPerFrame, FirmwareFigures, Summary};
+
+/// Bytes of a snapshot with its odometry count (paper, Fig. 8).
+const SNAPSHOT_BYTES: usize = 16 + 2;
+/// Bytes of an odometry vector.
+const VECTOR_BYTES: usize = 2;
+
+/// What is known at the end beside the recording.
+#[derive(Debug)]
+pub struct End<'f> {
+    /// How the flight ended.
+    pub outcome: Outcome,
+    /// Flight time, seconds.
+    pub flight_s: f64,
+    /// The board's figures.
+    pub figures: BoardFigures,
+    /// Which board.
+    pub backend: &'static str,
+    /// The image, where there was one.
+    pub firmware: Option<&'f Firmware>,
+    /// Wall time.
+    pub wall: Duration,
+}
+
+/// The figures of a flight.
+pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary {
+    let (outbound, inbound) = metrics::paths(recording);
+    let outbound_m = metrics::length(&outbound);
+    let memory_bytes =
+        SNAPSHOT_BYTES * recording.snapshots.len() + VECTOR_BYTES * recording.odometry.len();
+    let home = recording
+        .track
+        .first()
+        .map(|point| point.truth)
+        .unwrap_or_default();
+    let last = recording.track.last();
+    let figures = &end.figures;
+    let wall_s = end.wall.as_secs_f64();
+    Summary {
+        completed: end.outcome == Outcome::Completed,
+        outcome: in_words(end.outcome).to_owned(),
+        backend: end.backend,
+        seed: scenario.seed,
+        world: scenario.world.clone(),
+        route: scenario.route.name().to_owned(),
+        homing: scenario.homing.name(),
+        spacing_m: scenario.spacing.metres(),
+        outbound_m,
+        inbound_m: metrics::length(&inbound),
+        home_error_m: last.map_or(0.0, |last| last.truth.distance(&home)),
+        cross_track_rms_m: metrics::cross_track_rms(&inbound, &outbound),
+        odometry_only_error_m: last.map_or(0.0, |last| last.truth.distance(&last.uncorrected)),
+        snapshots: recording.snapshots.len(),
+        memory_bytes,
+        bytes_per_m: memory_bytes as f64 / outbound_m,
+        frames_sent: figures.frames_sent,
+        frames_captured: figures.frames_captured,
+        frames_dropped: figures.frames_sent - figures.frames_processed.min(figures.frames_sent),
+        vectors: recording.vectors.len(),
+        cycles_per_frame: cycles_per_frame(recording, figures),
+        cpu_load: figures.cpu_load,
+        flight_s: end.flight_s,
+        wall_s,
+        realtime_factor: end.flight_s / wall_s,
+        firmware: end.firmware.map(|firmware| FirmwareFigures {
+            flash_bytes: firmware.flash_bytes(),
+            ram_bytes: firmware.static_ram_bytes(),
+            stack_peak_bytes: figures.stack_peak_bytes,
+        }),
+    }
+}
+
+/// The firmware's own readings, held against the emulator's of the same frames.
+fn cycles_per_frame(recording: &Recording, figures: &BoardFigures) -> Option<CyclesPerFrame> {
+    let own: Vec<u32> = recording
+        .frames
+        .iter()
+        .filter_map(|frame| frame.cycles)
+        .collect();
+    let pairs = own.iter().zip(&figures.traced_cycles);
+    let largest_disagreement = pairs.map(|(own, traced)| own.abs_diff(*traced)).max()?;
+    let (own, traced) = (sorted(&own), sorted(&figures.traced_cycles));
+    Some(CyclesPerFrame {
+        p50: quantile(&own, 0.5),
+        p99: quantile(&own, 0.99),
+        max: quantile(&own, 1.0),
+        emulator_p50: quantile(&traced, 0.5),
+        largest_disagreement,
+    })
+}
+
+fn sorted(values: &[u32]) -> Vec<u32> {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable();
+    sorted
+}
+
+fn in_words(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Completed => "followed the route to its first snapshot",
+        Outcome::TimedOut => "landed: the time limit had passed",
+        Outcome::NoEcho => "landed: the camera did not answer a command",
+        Outcome::FenceBreached => "landed: too far from the start",
+        Outcome::TooHigh => "landed: too high",
+        Outcome::PositionLost => "landed: the filter lost its position",
+        Outcome::BrokenMessage => "landed: the camera sent a target that is no number",
+        Outcome::LandCommanded => "landed: on command",
+        Outcome::Killed => "stopped: the motors were switched off",
+    }
+}

@@ -1,0 +1,55 @@
+//! The folder that a flight leaves behind.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::flight::Flown;
+use crate::record::Recording;
+use crate::report;
+use crate::summary::Summary;
+
+/// Where a flight goes unless it is told otherwise.
+pub fn default_path(summary: &Summary) -> PathBuf {
+    Path::new("flights").join(format!(
+        "{}-{}-{}",
+        summary.route, summary.backend, summary.seed
+    ))
+}
+
+/// Writes `summary.json`, `flight.log`, `recording.json`, `report.html` and `map.svg`.
+pub fn write(folder: &Path, flown: &Flown) -> io::Result<()> {
+    fs::create_dir_all(folder)?;
+    fs::write(
+        folder.join("summary.json"),
+        serde_json::to_string_pretty(&flown.summary)? + "\n",
+    )?;
+    fs::write(
+        folder.join("recording.json"),
+        serde_json::to_string(&flown.recording)? + "\n",
+    )?;
+    fs::write(folder.join("flight.log"), log(&flown.recording))?;
+    fs::write(
+        folder.join("report.html"),
+        report::html(&flown.recording, &flown.summary),
+    )?;
+    fs::write(
+        folder.join("map.svg"),
+        report::picture(&flown.recording, &flown.summary),
+    )
+}
+
+/// The log as text, a line each.
+fn log(recording: &Recording) -> String {
+    let mut text = String::new();
+    for line in &recording.log {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{:10.3} {:<5} {:<8} {}",
+            line.t, line.level, line.source, line.text
+        );
+    }
+    text
+}

@@ -1,0 +1,126 @@
+//! What is to be flown: route, world, seed and the navigator's settings.
+
+use autopilot::app;
+use clap::ValueEnum;
+use link::{Record, WorldPoint};
+
+/// The scripted way out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Route {
+    /// The paper's U (Fig. 6B): 5 m, 4 m, 5 m, out and back twice: 56 m
+    #[default]
+    U,
+    /// The paper's S (Fig. 6A): 20 m out and back: 40 m
+    S,
+    /// One leg of 5 m (Fig. 5)
+    Line,
+    /// Round one corner, 4 m: seconds, for tests
+    Corner,
+}
+
+impl Route {
+    /// The name on the command line and in the summary.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::U => "u",
+            Self::S => "s",
+            Self::Line => "line",
+            Self::Corner => "corner",
+        }
+    }
+
+    /// The way points.
+    pub fn waypoints(self) -> app::Route {
+        match self {
+            Self::U => app::Route::u(),
+            Self::S => app::Route::s(),
+            // South, like the first leg of the U: the arena's middle is there.
+            Self::Line => along(&[(0.0, 0.0), (-5.0, 0.0)]),
+            Self::Corner => along(&[(0.0, 0.0), (-3.0, 0.0), (-3.0, 1.0)]),
+        }
+    }
+}
+
+/// A route through places (north, east), metres.
+fn along(places: &[(f32, f32)]) -> app::Route {
+    let places: Vec<_> = places
+        .iter()
+        .map(|(north, east)| WorldPoint::from_north_east(*north, *east))
+        .collect();
+    app::Route::through(&places)
+}
+
+/// How the drone finds back.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Homing {
+    /// Odometry between snapshots, homing at each (the paper's strategy)
+    #[default]
+    Both,
+    /// Odometry alone: what the paper compares with
+    Odometry,
+    /// Homing from snapshot to snapshot, without odometry (Fig. 6C)
+    Sequence,
+}
+
+impl Homing {
+    /// The name on the command line and in the summary.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Both => "both",
+            Self::Odometry => "odometry",
+            Self::Sequence => "sequence",
+        }
+    }
+
+    /// What the camera is told to record.
+    pub fn record(self) -> Record {
+        match self {
+            Self::Both => Record::ROUTE,
+            Self::Odometry => Record::ODOMETRY,
+            Self::Sequence => Record::SEQUENCE,
+        }
+    }
+}
+
+/// One flight, except for the board that it is flown on.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// The way out.
+    pub route: Route,
+    /// A name that `fake_sensors::world` knows.
+    pub world: String,
+    /// Seed of world, sensors and camera noise.
+    pub seed: u64,
+    /// Between snapshots.
+    pub spacing: Spacing,
+    /// How the drone finds back.
+    pub homing: Homing,
+}
+
+/// Distance between snapshots, in the firmware's unit of 0.1 m, so that it can be asked for on the
+/// link without rounding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Spacing {
+    decimetres: u8,
+}
+
+impl Spacing {
+    /// From metres; `None` unless within 0.2..=10 m.
+    pub fn from_metres(metres: f64) -> Option<Self> {
+        // Closer than 0.2 m there is no odometry between snapshots; beyond 10 m an odometry vector
+        // of 12.7 m at most could not span a leg.
+        (0.2..=10.0).contains(&metres).then(|| Self {
+            decimetres: (metres * 10.0).round() as u8,
+        })
+    }
+
+    /// In metres.
+    pub fn metres(self) -> f64 {
+        f64::from(self.decimetres) / 10.0
+    }
+
+    /// In the unit of the link's COMMAND argument, 0.1 m.
+    pub fn decimetres(self) -> u8 {
+        self.decimetres
+    }
+}
