@@ -35,8 +35,9 @@ pub enum Refusal {
         /// The value written.
         value: u32,
     },
-    /// A register of a block whose bus clock is off: silicon answers zeros.
-    #[error("{block} at {address:#010x} was accessed while its clock is off in the RCC")]
+    /// A write to a block whose bus clock is off, which silicon would lose, and whose loss matters.
+    /// (Reads are answered with zeros, as a time stamp taken early in the boot may well want.)
+    #[error("{block} at {address:#010x} was written while its clock is off in the RCC")]
     ClockOff {
         /// The block.
         block: Block,

@@ -64,7 +64,7 @@ impl<W: Wiring> Soc<W> {
         })
     }
 
-    /// The block at `address`, if its clock runs.
+    /// The block at `address` and the offset in it.
     fn locate(&self, address: u32, width: Width) -> Result<(Block, u32), Refusal> {
         let mask = match width {
             Width::Byte => 0,
@@ -78,10 +78,11 @@ impl<W: Wiring> Soc<W> {
         if let Block::Other(_) = block {
             return Err(Refusal::UnmodelledRegister { block, address });
         }
-        if block.gate().is_some_and(|gate| !self.rcc.enabled(gate)) {
-            return Err(Refusal::ClockOff { block, address });
-        }
         Ok((block, offset))
+    }
+
+    fn clock_is_off(&self, block: Block) -> bool {
+        block.gate().is_some_and(|gate| !self.rcc.enabled(gate))
     }
 
     fn read_narrow(
@@ -92,6 +93,9 @@ impl<W: Wiring> Soc<W> {
         width: Width,
     ) -> Result<u32, Refusal> {
         let (block, offset) = self.locate(address, width)?;
+        if self.clock_is_off(block) {
+            return Ok(0);
+        }
         let word = self.read_register(memory, now, block, offset & !3)?;
         Ok(word >> (8 * (address & 3)) & lanes(width))
     }
@@ -117,7 +121,14 @@ impl<W: Wiring> Soc<W> {
             }
             (_, NarrowWrite::Refused) => return Err(Refusal::WordOnly { block, address }),
         };
-        self.write_register(memory, now, block, register, word)
+        if !self.clock_is_off(block) {
+            return self.write_register(memory, now, block, register, word);
+        }
+        // The write is lost. That does no harm if the register holds the value already.
+        if self.read_register(memory, now, block, register)? == word {
+            return Ok(());
+        }
+        Err(Refusal::ClockOff { block, address })
     }
 
     fn read_register(
@@ -254,8 +265,8 @@ impl<W: Wiring> Soc<W> {
         self.tree = tree;
         for (number, timer) in (1..).zip(&mut self.timers) {
             let block = Block::Timer(number);
-            let gated = block.gate().is_some_and(|gate| !self.rcc.enabled(gate));
-            timer.set_clock(now, if gated { 0 } else { tree.timer_cycles(block) });
+            let runs = block.gate().is_none_or(|gate| self.rcc.enabled(gate));
+            timer.set_clock(now, if runs { tree.timer_cycles(block) } else { 0 });
         }
         for (number, usart) in (1..).zip(&mut self.usarts) {
             usart.set_clock(tree.bus_cycles(Block::Usart(number)));

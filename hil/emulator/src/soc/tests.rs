@@ -199,13 +199,16 @@ fn a_new_timer_reload_takes_effect_at_the_overflow_and_is_reported_then() {
 }
 
 #[test]
-fn a_block_without_a_clock_is_refused() {
-    let refused = Bench::new().access(USART2, Width::Word, None);
+fn a_block_without_a_clock_reads_as_zero_and_a_write_that_matters_is_refused() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.read(USART2), 0);
+    bench.write(USART2 + 12, 0);
+    let refused = bench.access(USART2 + 12, Width::Word, Some(1 << 13));
     assert_eq!(
         refused,
         Err(Refusal::ClockOff {
             block: Block::Usart(2),
-            address: USART2
+            address: USART2 + 12
         })
     );
 }
