@@ -8,6 +8,7 @@
 mod clocks;
 mod dcmi;
 mod dma;
+mod effects;
 mod exti;
 mod flash;
 mod gpio;
@@ -48,7 +49,7 @@ use i2c::I2c;
 use identity::Debug;
 use outputs::{Outputs, Sources};
 use power::Power;
-use reach::Reach;
+use reach::reach;
 use timer::Timer;
 use usart::Usart;
 use watchdog::Watchdog;
@@ -127,13 +128,7 @@ impl<W: Wiring> Soc<W> {
         self.usarts.iter_mut().for_each(Usart::reset);
         self.dcmi.reset();
         for i2c in &mut self.i2cs {
-            i2c.reset(&mut Reach {
-                now,
-                time: &self.time,
-                memory: &mut *memory,
-                dma: &mut self.dma,
-                wiring: &mut self.wiring,
-            });
+            i2c.reset(reach!(self, memory, now));
         }
         self.refusal = None;
         self.next = None;
@@ -257,13 +252,7 @@ impl<W: Wiring> Soc<W> {
         }
         for i2c in &mut self.i2cs {
             if i2c.next() <= now {
-                i2c.advance(&mut Reach {
-                    now,
-                    time: &self.time,
-                    memory: &mut *memory,
-                    dma: &mut self.dma,
-                    wiring: &mut self.wiring,
-                });
+                i2c.advance(reach!(self, memory, now));
             }
         }
         if self.camera_cycle() <= now {

@@ -26,3 +26,17 @@ impl<W> Reach<'_, W> {
         self.time.nanos(self.now)
     }
 }
+
+/// The surroundings of a block of `$soc` while that block is borrowed.
+macro_rules! reach {
+    ($soc:ident, $memory:expr, $now:expr) => {
+        &mut $crate::soc::reach::Reach {
+            now: $now,
+            time: &$soc.time,
+            memory: $memory,
+            dma: &mut $soc.dma,
+            wiring: &mut $soc.wiring,
+        }
+    };
+}
+pub(super) use reach;

@@ -289,8 +289,18 @@ fn a_camera_that_has_nothing_to_say_is_asked_again_only_later() {
     assert_eq!(soc.next_event(), NEVER);
 }
 
-/// Everything a run of camera, serial line and timer leaves behind, sliced by `slice` cycles.
-fn busy_run(slice: Cycle) -> (Vec<u8>, Vec<(Nanos, u8)>, DcmiCounters, UsartCounters, u32) {
+/// Everything a run leaves behind.
+#[derive(PartialEq)]
+struct Remains {
+    sram: Vec<u8>,
+    sent: Vec<(Nanos, u8)>,
+    frames: DcmiCounters,
+    bytes: UsartCounters,
+    count: u32,
+}
+
+/// A millisecond of camera, serial line and timer, in slices of `slice` cycles.
+fn busy_run(slice: Cycle) -> Remains {
     let mut bench = Bench::at_full_speed();
     let start = bench.now;
     let words = 2 << 13 | 2 << 11;
@@ -321,25 +331,22 @@ fn busy_run(slice: Cycle) -> (Vec<u8>, Vec<(Nanos, u8)>, DcmiCounters, UsartCoun
         bench.now = (bench.now + slice).min(start + 168_000);
         bench.soc.advance(&mut bench.memory, bench.now);
     }
-    let count = bench.read(TIM12 + 0x24);
-    let sram = bench.memory.bytes(SRAM, 0x800).unwrap().to_vec();
-    let sent = bench.soc.usart_received(2);
-    (
-        sram,
-        sent,
-        bench.soc.dcmi_counters(),
-        bench.soc.usart_counters(2),
-        count,
-    )
+    Remains {
+        count: bench.read(TIM12 + 0x24),
+        sram: bench.memory.bytes(SRAM, 0x800).unwrap().to_vec(),
+        sent: bench.soc.usart_received(2),
+        frames: bench.soc.dcmi_counters(),
+        bytes: bench.soc.usart_counters(2),
+    }
 }
 
 #[test]
 fn a_run_does_not_depend_on_how_it_is_sliced() {
     let whole = busy_run(168_000);
     // 101 edges in a millisecond: 17 frames begun, 16 of them ended.
-    assert_eq!(whole.2.frames_captured, 16);
-    assert_eq!(whole.1.len(), 32);
-    assert_eq!(whole.3.received, 16);
+    assert_eq!(whole.frames.frames_captured, 16);
+    assert_eq!(whole.sent.len(), 32);
+    assert_eq!(whole.bytes.received, 16);
     for slice in [1, 77, 1_000, 41_999] {
         assert!(busy_run(slice) == whole, "slices of {slice} cycles");
     }

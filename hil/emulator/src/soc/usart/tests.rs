@@ -1,7 +1,9 @@
 //! Claims of RM0090 §30, on the registers of USART2: PCLK1 42 MHz under HCLK 168 MHz.
 
 use super::*;
-use crate::memory::SRAM;
+use crate::memory::{Memory, SRAM};
+use crate::soc::dma::Dma;
+use crate::soc::timeline::Timeline;
 
 /// 42 MHz / 921 600 Bd = 45.57, rounded to 46 bus clocks a bit.
 const BRR_921600: u32 = 46;
