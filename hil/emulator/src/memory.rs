@@ -21,9 +21,9 @@ pub struct Memory {
     ccm: Box<[u8; CCM_BYTES]>,
 }
 
-/// A boxed array of one byte value, built without passing through the stack.
-fn filled<const N: usize>(byte: u8) -> Box<[u8; N]> {
-    match vec![byte; N].into_boxed_slice().try_into() {
+/// A boxed array of equal elements, built without passing through the stack.
+pub(crate) fn boxed<T: Copy, const N: usize>(element: T) -> Box<[T; N]> {
+    match vec![element; N].into_boxed_slice().try_into() {
         Ok(array) => array,
         Err(_) => unreachable!("the slice was made with this length"),
     }
@@ -53,9 +53,9 @@ impl Memory {
     /// Erased flash and zeroed RAM.
     pub fn new() -> Self {
         Self {
-            flash: filled(0xff),
-            sram: filled(0),
-            ccm: filled(0),
+            flash: boxed(0xff),
+            sram: boxed(0),
+            ccm: boxed(0),
         }
     }
 

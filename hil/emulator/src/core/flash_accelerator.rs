@@ -1,6 +1,8 @@
 //! The adaptive real-time accelerator between core and flash (RM0090 §3.4.2): what instruction
 //! fetches and constants cost when the flash needs wait states.
 
+use crate::memory::boxed;
+
 /// Bytes of a flash line, log2: 128 bits.
 const LINE_SHIFT: u32 = 4;
 /// Lines of the instruction cache.
@@ -14,14 +16,59 @@ const FLASH_LINES: usize = 1 << 16;
 /// The upper half of line numbers in flash: 0x0800_0000 >> LINE_SHIFT >> 16.
 const FLASH_REGION: u32 = 0x80;
 
+/// The order in which slots were used: a ring from the newest to the oldest, so that both a use and
+/// a replacement take constant time.
+struct Recency<const N: usize> {
+    /// The next older slot; behind the oldest comes the newest.
+    older: [u8; N],
+    newer: [u8; N],
+    newest: u8,
+}
+
+impl<const N: usize> Recency<N> {
+    fn new() -> Self {
+        Self {
+            older: std::array::from_fn(|slot| ((slot + 1) % N) as u8),
+            newer: std::array::from_fn(|slot| ((slot + N - 1) % N) as u8),
+            newest: 0,
+        }
+    }
+
+    /// Makes a slot the newest.
+    #[inline(always)]
+    fn touch(&mut self, slot: u8) {
+        if slot == self.newest {
+            return;
+        }
+        let (older, newer) = (self.older[at(slot)], self.newer[at(slot)]);
+        self.older[at(newer)] = older;
+        self.newer[at(older)] = newer;
+        let oldest = self.newer[at(self.newest)];
+        self.older[at(oldest)] = slot;
+        self.newer[at(slot)] = oldest;
+        self.older[at(slot)] = self.newest;
+        self.newer[at(self.newest)] = slot;
+        self.newest = slot;
+    }
+
+    /// Makes the oldest slot the newest, and returns it.
+    fn renew_oldest(&mut self) -> u8 {
+        self.newest = self.newer[at(self.newest)];
+        self.newest
+    }
+}
+
+fn at(slot: u8) -> usize {
+    slot.into()
+}
+
 /// A few lines of flash, replaced least recently used first.
 struct LineCache<const N: usize> {
     enabled: bool,
     lines: [u32; N],
-    used: [u64; N],
-    clock: u64,
+    recency: Recency<N>,
     /// For each line of the flash 1 + the slot that holds it, or 0.
-    slots: Box<[u8]>,
+    slots: Box<[u8; FLASH_LINES]>,
 }
 
 impl<const N: usize> LineCache<N> {
@@ -29,9 +76,8 @@ impl<const N: usize> LineCache<N> {
         Self {
             enabled: false,
             lines: [NO_LINE; N],
-            used: [0; N],
-            clock: 0,
-            slots: vec![0; FLASH_LINES].into_boxed_slice(),
+            recency: Recency::new(),
+            slots: boxed(0),
         }
     }
 
@@ -43,35 +89,30 @@ impl<const N: usize> LineCache<N> {
     }
 
     /// Whether the line is held; it is from now on.
-    #[inline]
+    #[inline(always)]
     fn holds(&mut self, line: u32) -> bool {
         if !self.enabled {
             return false;
         }
-        self.clock += 1;
-        let slot = self.slots[slot_index(line)];
-        if slot != 0 {
-            self.used[usize::from(slot - 1)] = self.clock;
-            return true;
+        match self.slots[slot_index(line)] {
+            0 => {
+                self.replace(line);
+                false
+            }
+            slot => {
+                self.recency.touch(slot - 1);
+                true
+            }
         }
-        self.replace(line);
-        false
     }
 
     fn replace(&mut self, line: u32) {
-        let mut oldest = 0;
-        for slot in 1..N {
-            if self.used[slot] < self.used[oldest] {
-                oldest = slot;
-            }
-        }
-        let evicted = self.lines[oldest];
+        let slot = self.recency.renew_oldest();
+        let evicted = std::mem::replace(&mut self.lines[at(slot)], line);
         if evicted != NO_LINE {
             self.slots[slot_index(evicted)] = 0;
         }
-        self.lines[oldest] = line;
-        self.used[oldest] = self.clock;
-        self.slots[slot_index(line)] = oldest as u8 + 1;
+        self.slots[slot_index(line)] = slot + 1;
     }
 }
 

@@ -306,6 +306,7 @@ impl Guard {
         self.0 & 15
     }
 
+    #[inline(always)]
     pub const fn is_conditional(self) -> bool {
         self.condition() != ALWAYS
     }

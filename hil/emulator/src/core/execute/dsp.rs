@@ -35,7 +35,7 @@ impl Core {
 
     /// Executes an operation of the DSP extension.
     #[inline(never)]
-    pub(super) fn execute_dsp(&mut self, i: &Instruction) {
+    pub(super) fn execute_dsp(&mut self, i: Instruction) {
         use Operation::*;
         let (n, m) = (self.r(i.n), self.r(i.m));
         let result = match i.operation {
@@ -64,7 +64,7 @@ impl Core {
 
     /// UXTAB16 and SXTAB16
     #[inline(never)]
-    pub(super) fn extend_halves(&mut self, i: &Instruction) {
+    pub(super) fn extend_halves(&mut self, i: Instruction) {
         let (n, m) = (self.r(i.n), self.r(i.m).rotate_right(i.immediate));
         let extended = |half: u32| match i.operation {
             Operation::Uxtab16 => half & 0xff,
@@ -76,11 +76,11 @@ impl Core {
     }
 
     /// Register a, where it is a register.
-    fn addend(&self, i: &Instruction) -> u32 {
+    fn addend(&self, i: Instruction) -> u32 {
         if i.a == PC { 0 } else { self.r(i.a) }
     }
 
-    fn saturate(&mut self, i: &Instruction, value: u32) -> u32 {
+    fn saturate(&mut self, i: Instruction, value: u32) -> u32 {
         let flags = &mut self.registers.flags;
         let limit = 1i64 << (i.a & 31);
         let unsigned = matches!(i.operation, Operation::Usat | Operation::Usat16);
@@ -112,7 +112,7 @@ impl Core {
     }
 
     /// Multiplications of halves with a result of 32 bits. Overflow sets Q and wraps.
-    fn accumulate(&mut self, i: &Instruction, n: u32, m: u32) -> u32 {
+    fn accumulate(&mut self, i: Instruction, n: u32, m: u32) -> u32 {
         let (n_top, m_top) = (i.immediate & 2 != 0, i.immediate & 1 != 0);
         let products = match i.operation {
             Operation::SmlaHalves => half(n, n_top) * half(m, m_top),
@@ -125,7 +125,7 @@ impl Core {
     }
 
     /// SMLALxy, SMLALD, SMLSLD: to d and a.
-    fn accumulate_long(&mut self, i: &Instruction, n: u32, m: u32) {
+    fn accumulate_long(&mut self, i: Instruction, n: u32, m: u32) {
         let product = match i.operation {
             Operation::SmlalHalves => half(n, i.immediate & 2 != 0) * half(m, i.immediate & 1 != 0),
             _ => dual(i, n, m),
@@ -137,7 +137,7 @@ impl Core {
     }
 
     /// SMMLA, SMMLS: the top half of a long multiplication.
-    fn multiply_top(&self, i: &Instruction, n: u32, m: u32) -> u32 {
+    fn multiply_top(&self, i: Instruction, n: u32, m: u32) -> u32 {
         let accumulator = u64::from(self.addend(i)) << 32;
         let product = (word(n) * word(m)) as u64;
         let sum = if i.operation == Operation::Smmls {
@@ -191,7 +191,7 @@ impl Core {
 }
 
 /// Two products of halves, added or subtracted; bit 0 of the immediate exchanges the halves of m.
-fn dual(i: &Instruction, n: u32, m: u32) -> i64 {
+fn dual(i: Instruction, n: u32, m: u32) -> i64 {
     let m = if i.immediate & 1 != 0 {
         m.rotate_right(16)
     } else {

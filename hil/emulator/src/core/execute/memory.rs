@@ -226,7 +226,7 @@ impl Core {
     }
 
     #[inline(never)]
-    pub(super) fn load_double(&mut self, memory: &mut Memory, bus: &mut dyn Bus, i: &Instruction) {
+    pub(super) fn load_double(&mut self, memory: &mut Memory, bus: &mut dyn Bus, i: Instruction) {
         let (address, base) = self.double_address(i);
         if !self.aligned(address) {
             return;
@@ -241,7 +241,7 @@ impl Core {
     }
 
     #[inline(never)]
-    pub(super) fn store_double(&mut self, memory: &mut Memory, bus: &mut dyn Bus, i: &Instruction) {
+    pub(super) fn store_double(&mut self, memory: &mut Memory, bus: &mut dyn Bus, i: Instruction) {
         let (address, base) = self.double_address(i);
         if !self.aligned(address) {
             return;
@@ -257,7 +257,7 @@ impl Core {
 
     /// The address of a double transfer and what would be written back.
     #[inline(always)]
-    fn double_address(&self, i: &Instruction) -> (u32, u32) {
+    fn double_address(&self, i: Instruction) -> (u32, u32) {
         let base = self.registers.r[usize::from(i.n & 15)];
         let sum = base.wrapping_add(i.immediate);
         // Without write-back there is no post-indexing.
@@ -291,7 +291,7 @@ impl Core {
         &mut self,
         memory: &mut Memory,
         bus: &mut dyn Bus,
-        i: &Instruction,
+        i: Instruction,
     ) {
         let (address, base) = self.multiple_address(i);
         if !self.aligned(address) {
@@ -308,7 +308,7 @@ impl Core {
         &mut self,
         memory: &mut Memory,
         bus: &mut dyn Bus,
-        i: &Instruction,
+        i: Instruction,
     ) {
         let (address, base) = self.multiple_address(i);
         if !self.aligned(address) {
@@ -322,7 +322,7 @@ impl Core {
 
     /// The lowest address of a multiple transfer and what would be written back.
     #[inline(always)]
-    fn multiple_address(&self, i: &Instruction) -> (u32, u32) {
+    fn multiple_address(&self, i: Instruction) -> (u32, u32) {
         let base = self.registers.r[usize::from(i.n & 15)];
         let bytes = 4 * i.immediate.count_ones();
         if i.a & 2 != 0 {
@@ -376,7 +376,7 @@ impl Core {
         &mut self,
         memory: &mut Memory,
         bus: &mut dyn Bus,
-        i: &Instruction,
+        i: Instruction,
     ) {
         let base = self.registers.r[usize::from(i.n & 15)];
         let (address, updated) = if i.a & 2 != 0 {
@@ -461,7 +461,7 @@ impl Core {
         &mut self,
         memory: &mut Memory,
         bus: &mut dyn Bus,
-        i: &Instruction,
+        i: Instruction,
         width: Width,
     ) -> u32 {
         let address = self.registers.r[usize::from(i.n & 15)].wrapping_add(i.immediate);

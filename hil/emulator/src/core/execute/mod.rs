@@ -80,7 +80,7 @@ impl Core {
         if guard.is_traced() {
             self.reach_traced(pc);
         }
-        if !self.registers.flags.hold(guard.condition()) {
+        if guard.is_conditional() && !self.registers.flags.hold(guard.condition()) {
             return false;
         }
         if guard.is_float() && !self.fpu_ready {

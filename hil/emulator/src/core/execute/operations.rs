@@ -84,7 +84,7 @@ impl Core {
         /// A logical operation with a shifted register; n = 15 reads as zero.
         macro_rules! logical_shifted {
             ($operation:expr) => {{
-                let (operand, carry) = self.shifted(&i);
+                let (operand, carry) = self.shifted(i);
                 let result: u32 = $operation(r!(n), operand);
                 if i.a != 0 {
                     flags!().set_nz(result);
@@ -170,7 +170,7 @@ impl Core {
             Operation::Tst => _ = self.logical(flag_effect::SET, r!(n) & r!(m)),
 
             Operation::AddShifted => {
-                let (operand, _) = self.shifted(&i);
+                let (operand, _) = self.shifted(i);
                 r!(d) = if i.a != 0 {
                     flags!().add(r!(n), operand)
                 } else {
@@ -178,7 +178,7 @@ impl Core {
                 };
             }
             Operation::SubShifted => {
-                let (operand, _) = self.shifted(&i);
+                let (operand, _) = self.shifted(i);
                 r!(d) = if i.a != 0 {
                     flags!().subtract(r!(n), operand)
                 } else {
@@ -186,7 +186,7 @@ impl Core {
                 };
             }
             Operation::RsbShifted => {
-                let (operand, _) = self.shifted(&i);
+                let (operand, _) = self.shifted(i);
                 r!(d) = if i.a != 0 {
                     flags!().subtract(operand, r!(n))
                 } else {
@@ -194,19 +194,19 @@ impl Core {
                 };
             }
             Operation::AdcShifted => {
-                let (operand, _) = self.shifted(&i);
+                let (operand, _) = self.shifted(i);
                 r!(d) = flags!().add_with_carry(r!(n), operand, i.a != 0);
             }
             Operation::SbcShifted => {
-                let (operand, _) = self.shifted(&i);
+                let (operand, _) = self.shifted(i);
                 r!(d) = flags!().add_with_carry(r!(n), !operand, i.a != 0);
             }
             Operation::CmpShifted => {
-                let (operand, _) = self.shifted(&i);
+                let (operand, _) = self.shifted(i);
                 flags!().subtract(r!(n), operand);
             }
             Operation::CmnShifted => {
-                let (operand, _) = self.shifted(&i);
+                let (operand, _) = self.shifted(i);
                 flags!().add(r!(n), operand);
             }
             Operation::AndShifted => r!(d) = logical_shifted!(|a, b| a & b),
@@ -266,11 +266,11 @@ impl Core {
                 self.cycles += cycles::division(dividend.unsigned_abs(), divisor.unsigned_abs());
             }
 
-            Operation::Uxtab => r!(d) = r!(n).wrapping_add(rotated(&i, r!(m)) & 0xff),
-            Operation::Uxtah => r!(d) = r!(n).wrapping_add(rotated(&i, r!(m)) & 0xffff),
-            Operation::Sxtab => r!(d) = r!(n).wrapping_add(rotated(&i, r!(m)) as i8 as u32),
-            Operation::Sxtah => r!(d) = r!(n).wrapping_add(rotated(&i, r!(m)) as i16 as u32),
-            Operation::Uxtab16 | Operation::Sxtab16 => self.extend_halves(&i),
+            Operation::Uxtab => r!(d) = r!(n).wrapping_add(rotated(i, r!(m)) & 0xff),
+            Operation::Uxtah => r!(d) = r!(n).wrapping_add(rotated(i, r!(m)) & 0xffff),
+            Operation::Sxtab => r!(d) = r!(n).wrapping_add(rotated(i, r!(m)) as i8 as u32),
+            Operation::Sxtah => r!(d) = r!(n).wrapping_add(rotated(i, r!(m)) as i16 as u32),
+            Operation::Uxtab16 | Operation::Sxtab16 => self.extend_halves(i),
             Operation::Ubfx => r!(d) = r!(n) >> (i.immediate & 31) & ones(i.a),
             Operation::Sbfx => {
                 let unused = 32 - u32::from(i.a);
@@ -305,7 +305,7 @@ impl Core {
             | Operation::Usada8
             | Operation::SmlalHalves
             | Operation::Smlald
-            | Operation::Smlsld => self.execute_dsp(&i),
+            | Operation::Smlsld => self.execute_dsp(i),
 
             Operation::LdrLiteral => r!(d) = self.load_literal(memory, bus, i.immediate),
             Operation::LdrImm => r!(d) = load!(u32, offset!()),
@@ -332,10 +332,10 @@ impl Core {
             Operation::StrIndexed => store_indexed!(store32),
             Operation::StrbIndexed => store_indexed!(store8),
             Operation::StrhIndexed => store_indexed!(store16),
-            Operation::Ldrd => self.load_double(memory, bus, &i),
-            Operation::Strd => self.store_double(memory, bus, &i),
-            Operation::Ldm => self.load_multiple(memory, bus, &i),
-            Operation::Stm => self.store_multiple(memory, bus, &i),
+            Operation::Ldrd => self.load_double(memory, bus, i),
+            Operation::Strd => self.store_double(memory, bus, i),
+            Operation::Ldm => self.load_multiple(memory, bus, i),
+            Operation::Stm => self.store_multiple(memory, bus, i),
             Operation::Push => self.push(memory, bus, i.immediate),
             Operation::Pop => self.pop(memory, bus, i.immediate),
             Operation::LdrPc => {
@@ -353,9 +353,9 @@ impl Core {
             Operation::Ldrex => r!(d) = self.load_exclusive(memory, bus, offset!(), Width::Word),
             Operation::Ldrexb => r!(d) = self.load_exclusive(memory, bus, offset!(), Width::Byte),
             Operation::Ldrexh => r!(d) = self.load_exclusive(memory, bus, offset!(), Width::Half),
-            Operation::Strex => r!(d) = self.store_exclusive(memory, bus, &i, Width::Word),
-            Operation::Strexb => r!(d) = self.store_exclusive(memory, bus, &i, Width::Byte),
-            Operation::Strexh => r!(d) = self.store_exclusive(memory, bus, &i, Width::Half),
+            Operation::Strex => r!(d) = self.store_exclusive(memory, bus, i, Width::Word),
+            Operation::Strexb => r!(d) = self.store_exclusive(memory, bus, i, Width::Byte),
+            Operation::Strexh => r!(d) = self.store_exclusive(memory, bus, i, Width::Half),
             Operation::Clrex => self.exclusive = false,
 
             Operation::B => self.registers.pc = i.immediate,
@@ -377,11 +377,11 @@ impl Core {
             Operation::Cbz => self.branch_if(r!(n) == 0, i.immediate),
             Operation::Cbnz => self.branch_if(r!(n) != 0, i.immediate),
             Operation::Tbb => {
-                let entry = self.load8(memory, bus, table(&i, r!(n)).wrapping_add(r!(m)));
+                let entry = self.load8(memory, bus, table(i, r!(n)).wrapping_add(r!(m)));
                 self.registers.pc = i.immediate.wrapping_add(2 * entry);
             }
             Operation::Tbh => {
-                let entry = self.load16(memory, bus, table(&i, r!(n)).wrapping_add(r!(m) << 1));
+                let entry = self.load16(memory, bus, table(i, r!(n)).wrapping_add(r!(m) << 1));
                 self.registers.pc = i.immediate.wrapping_add(2 * entry);
             }
 
@@ -389,7 +389,7 @@ impl Core {
             Operation::Vstr => self.store32(memory, bus, offset!(), s!(d)),
             Operation::VldrDouble => self.load_floats(memory, bus, offset!(), i.d, 2),
             Operation::VstrDouble => self.store_floats(memory, bus, offset!(), i.d, 2),
-            Operation::Vldm | Operation::Vstm => self.float_multiple(memory, bus, &i),
+            Operation::Vldm | Operation::Vstm => self.float_multiple(memory, bus, i),
             Operation::Vmov => s!(d) = s!(m),
             Operation::VmovImm => s!(d) = i.immediate,
             Operation::Vadd => s!(d) = float::add(s!(n), s!(m)),
@@ -429,10 +429,10 @@ impl Core {
             Operation::VcvtrToUnsigned => {
                 s!(d) = f32::from_bits(s!(m)).round_ties_even() as u32;
             }
-            Operation::VcvtFromHalf => s!(d) = float::from_half((s!(m) >> half_shift(&i)) as u16),
+            Operation::VcvtFromHalf => s!(d) = float::from_half((s!(m) >> half_shift(i)) as u16),
             Operation::VcvtToHalf => {
-                let half = u32::from(float::to_half(s!(m))) << half_shift(&i);
-                s!(d) = s!(d) & !(0xffff << half_shift(&i)) | half;
+                let half = u32::from(float::to_half(s!(m))) << half_shift(i);
+                s!(d) = s!(d) & !(0xffff << half_shift(i)) | half;
             }
             Operation::VcvtFromFixed => s!(d) = float::from_fixed(s!(d), i.a, i.immediate),
             Operation::VcvtToFixed => s!(d) = float::to_fixed(s!(d), i.a, i.immediate),
@@ -450,9 +450,9 @@ impl Core {
             Operation::VmrsFlags => flags!().set_nzcv(self.registers.fpscr),
             Operation::Vmsr => self.write_fpscr(r!(d)),
 
-            Operation::Mrs => self.read_special(&i),
-            Operation::Msr => self.write_special(&i),
-            Operation::Cps => self.change_masks(&i),
+            Operation::Mrs => self.read_special(i),
+            Operation::Msr => self.write_special(i),
+            Operation::Cps => self.change_masks(i),
             Operation::Bkpt => self.fail(Cause::Breakpoint(i.immediate as u8)),
             Operation::Svc => self.supervisor_call(i.immediate as u8),
             Operation::Wfe if self.event => self.event = false,
@@ -481,7 +481,7 @@ impl Core {
 
     /// Register m shifted as the immediate says, and the carry out.
     #[inline(always)]
-    fn shifted(&self, i: &Instruction) -> (u32, bool) {
+    fn shifted(&self, i: Instruction) -> (u32, bool) {
         const ROTATE_WITH_EXTEND: u32 = 3;
         let value = self.registers.r[usize::from(i.m & 15)];
         let flags = &self.registers.flags;
@@ -511,13 +511,13 @@ impl Core {
 
 /// The operand of an extension.
 #[inline(always)]
-fn rotated(i: &Instruction, value: u32) -> u32 {
+fn rotated(i: Instruction, value: u32) -> u32 {
     value.rotate_right(i.immediate)
 }
 
 /// The base of a branch table: behind the instruction where n is 15.
 #[inline(always)]
-fn table(i: &Instruction, n: u32) -> u32 {
+fn table(i: Instruction, n: u32) -> u32 {
     if i.n == super::super::instruction::PC {
         i.immediate
     } else {
@@ -533,6 +533,6 @@ pub(super) fn ones(width: u8) -> u32 {
 
 /// Which half of an S register holds a half-precision number.
 #[inline(always)]
-fn half_shift(i: &Instruction) -> u32 {
+fn half_shift(i: Instruction) -> u32 {
     u32::from(i.a & 1) * 16
 }

@@ -6,7 +6,7 @@ use super::super::{Cause, Core};
 impl Core {
     /// MRS
     #[inline(never)]
-    pub(super) fn read_special(&mut self, i: &Instruction) {
+    pub(super) fn read_special(&mut self, i: Instruction) {
         match self.registers.special(i.immediate) {
             Some(value) => self.registers.r[usize::from(i.d & 15)] = value,
             None => self.fail(Cause::Unpredictable(i.immediate)),
@@ -15,7 +15,7 @@ impl Core {
 
     /// MSR
     #[inline(never)]
-    pub(super) fn write_special(&mut self, i: &Instruction) {
+    pub(super) fn write_special(&mut self, i: Instruction) {
         let value = self.registers.r[usize::from(i.n & 15)];
         if self
             .registers
@@ -30,7 +30,7 @@ impl Core {
 
     /// CPSIE and CPSID
     #[inline(never)]
-    pub(super) fn change_masks(&mut self, i: &Instruction) {
+    pub(super) fn change_masks(&mut self, i: Instruction) {
         const FAULTMASK: u32 = 1;
         const PRIMASK: u32 = 2;
         let disable = i.d != 0;
