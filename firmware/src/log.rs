@@ -2,15 +2,30 @@
 //!
 //! Their formats are an interface: a change here is a change in the rig's log reader.
 
+use core::sync::atomic::{AtomicBool, Ordering};
+
 use embassy_time::Instant;
 
 use crate::clocks;
 use crate::counters::COUNTERS;
 
-defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
+defmt::timestamp!("{=u64:us}", timestamp_us());
 
-/// Once, first of all: which firmware this is and how fast its cycle counter runs.
+/// Whether the timer behind `Instant` runs. The HAL logs before it has started it, and the
+/// registers of a timer without a clock are not to be read.
+static CLOCK_RUNS: AtomicBool = AtomicBool::new(false);
+
+fn timestamp_us() -> u64 {
+    if CLOCK_RUNS.load(Ordering::Relaxed) {
+        Instant::now().as_micros()
+    } else {
+        0
+    }
+}
+
+/// Once, as soon as the HAL is up: which firmware this is and how fast its cycle counter runs.
 pub fn boot() {
+    CLOCK_RUNS.store(true, Ordering::Relaxed);
     defmt::info!(
         "cataglyphis {=str} boot, clock {=u32} Hz",
         env!("CARGO_PKG_VERSION"),

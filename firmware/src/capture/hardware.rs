@@ -30,13 +30,15 @@ pub enum Event {
 /// Takes back all that was under way and captures from the next start of frame on into `first`,
 /// then into the other buffer, and so on in turn.
 pub fn start(first: Buffer) {
-    stop();
+    // The reset takes the interface out of the middle of a frame, and empties its FIFO, which
+    // clearing its enable bit may leave with half a word.
+    rcc::enable_and_reset_without_stop::<peripherals::DCMI>();
+    stop_stream();
     start_stream(first);
     start_interface();
 }
 
-fn stop() {
-    DCMI.cr().write(|_| {});
+fn stop_stream() {
     let stream = DMA2.st(STREAM);
     stream.cr().modify(|cr| cr.set_en(false));
     for _ in 0..POLLS {
@@ -76,18 +78,11 @@ fn start_stream(first: Buffer) {
     stream.cr().modify(|cr| cr.set_en(true));
 }
 
-/// The reset empties the interface's FIFO, which clearing its enable bit may leave with half a
-/// word.
+/// The window begins at the first clock of the first row, as after reset.
 fn start_interface() {
-    rcc::enable_and_reset_without_stop::<peripherals::DCMI>();
-    DCMI.cwstrt().write(|_| {});
     DCMI.cwsize().write(|window| {
         window.set_capcnt(GEOMETRY.line_bytes() as u16 - 1);
         window.set_vline(GEOMETRY.height - 1);
-    });
-    DCMI.icr().write(|flags| {
-        flags.set_frame_isc(true);
-        flags.set_ovr_isc(true);
     });
     DCMI.ier().write(|enable| {
         enable.set_frame_ie(true);

@@ -22,17 +22,15 @@ pub async fn camera(mut capture: Capture) {
     let mut settling = 0;
     loop {
         check_in(Member::Camera);
-        if let Some(frames) = SENSOR_STARTED.try_take() {
-            settling = frames;
-        }
         match with_timeout(FRAME_TIMEOUT, capture.next()).await {
-            Ok(_) if settling > 0 => {
-                silences = 0;
-                settling -= 1;
-            }
             Ok(frame) => {
                 silences = 0;
-                pass_on(frame);
+                settling = SENSOR_STARTED.try_take().unwrap_or(settling);
+                if settling == 0 {
+                    pass_on(frame);
+                } else {
+                    settling -= 1;
+                }
             }
             Err(_) => {
                 COUNTERS.camera_silent.count();
