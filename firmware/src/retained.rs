@@ -100,7 +100,7 @@ fn vault() -> &'static Vault {
     unsafe { &*vault }
 }
 
-/// Whether the independent watchdog, and no failure of power, began this run (RM0090 §6.3.21).
+/// Whether the independent watchdog, and no failure of power, began this run (RM0090 §7.3.21).
 /// Clears the flags for the next.
 fn was_watchdog() -> bool {
     let flags = pac::RCC.csr().read();

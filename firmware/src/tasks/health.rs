@@ -8,7 +8,7 @@ use embassy_time::{Duration, Ticker};
 use crate::check_in;
 use crate::log;
 
-/// The watchdog's own oscillator is anywhere between 17 and 47 kHz (DS8626 table 37): nominal
+/// The watchdog's own oscillator is anywhere between 17 and 47 kHz (DS8626, LSI oscillator): nominal
 /// 1.5 s are 1.0 to 2.8 s, above the sum of the check-in period and the round below in any case.
 const WATCHDOG_US: u32 = 1_500_000;
 
