@@ -71,9 +71,17 @@ fn answer(pilot: &mut Retained, at: Instant, message: &link::Message, outbox: &m
 
 /// Hands the answers to the transmitter, all or none: half a frame would spoil the one after it.
 fn send(outbox: &mut Outbox) {
-    let bytes = outbox.bytes();
-    if OUTGOING.free_capacity() < bytes.len() || OUTGOING.try_write(bytes).is_err() {
+    let mut left = outbox.bytes();
+    if OUTGOING.free_capacity() < left.len() {
         COUNTERS.tx_dropped.count();
+        left = &[];
+    }
+    // The pipe is a ring, and one write ends at the ring's end.
+    while !left.is_empty() {
+        let Ok(written) = OUTGOING.try_write(left) else {
+            break;
+        };
+        left = left.get(written..).unwrap_or_default();
     }
     outbox.clear();
 }

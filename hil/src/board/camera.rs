@@ -4,6 +4,7 @@ use emulator::time::Nanos;
 use emulator::wiring::{CameraSignal, Pin, Wiring};
 use fake_sensors::camera::tcm8230::{Edge, Tcm8230};
 use fake_sensors::camera::{Frame, HEIGHT, LINE_BYTES, PanoramicCamera, Pose};
+use sensor::tcm8230::SETTLING_FRAMES;
 
 /// The sensor's reset input (pin map of the flight board).
 const RESET: Pin = Pin {
@@ -19,7 +20,7 @@ const EXTCLK: Pin = Pin {
 const I2C_BUS: u8 = 2;
 
 /// The edge with which a frame is complete.
-pub const LAST_LINE: Edge = Edge::Line(HEIGHT - 1);
+const LAST_LINE: Edge = Edge::Line(HEIGHT - 1);
 
 /// An image sensor behind a panoramic lens, looking at a world.
 #[derive(Debug)]
@@ -29,6 +30,8 @@ pub struct Camera {
     pose: Pose,
     frames_started: u64,
     frames_sent: u64,
+    /// Frames that a driver throws away: the sensor's first show nothing yet.
+    settling: u8,
 }
 
 impl Camera {
@@ -40,6 +43,7 @@ impl Camera {
             pose,
             frames_started: 0,
             frames_sent: 0,
+            settling: SETTLING_FRAMES,
         }
     }
 
@@ -63,7 +67,7 @@ impl Camera {
         self.frames_started
     }
 
-    /// Frames whose last line has been sent since power-on.
+    /// Frames with a picture whose last line has been sent since power-on.
     pub fn frames_sent(&self) -> u64 {
         self.frames_sent
     }
@@ -76,6 +80,7 @@ impl Camera {
                 self.frames_started += 1;
                 self.expose(number);
             }
+            LAST_LINE if self.settling > 0 => self.settling -= 1,
             LAST_LINE => self.frames_sent += 1,
             Edge::Line(_) | Edge::FrameEnd => {}
         }

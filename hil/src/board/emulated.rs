@@ -5,6 +5,7 @@ use emulator::image::Image;
 use emulator::machine::Machine;
 use emulator::time::Nanos;
 use fake_sensors::camera::Pose;
+use sensor::tcm8230::SETTLING_FRAMES;
 
 use super::camera::Camera;
 use super::firmware_log::{self, LogDecoder};
@@ -88,7 +89,7 @@ impl<'f> Emulated<'f> {
             epoch: (0, 0),
             machine,
         };
-        if !board
+        if board
             .machine
             .run_while(FIRST_FRAME_TIMEOUT, |camera| camera.frames_started() == 0)?
         {
@@ -182,12 +183,13 @@ impl Board for Emulated<'_> {
                 self.advance()?;
             }
         }
+        let captured = self.machine.dcmi_counters().frames_captured;
         let (idle, all) = self.epoch;
         let idle = self.machine.idle_cycles() - idle;
         let all = self.machine.cycles() - all;
         Ok(BoardFigures {
             frames_sent: self.machine.wiring().frames_sent(),
-            frames_captured: self.machine.dcmi_counters().frames_captured,
+            frames_captured: captured.saturating_sub(u64::from(SETTLING_FRAMES)),
             frames_processed: self.traced_cycles.len() as u64,
             traced_cycles: std::mem::take(&mut self.traced_cycles),
             cpu_load: Some(1.0 - idle as f64 / all.max(1) as f64),

@@ -109,9 +109,9 @@ pub struct FrameLog {
 /// Counters and figures of a board.
 #[derive(Clone, Debug, Default)]
 pub struct BoardFigures {
-    /// Frames that the camera sent whole, from its first.
+    /// Frames that the camera sent whole, without the first few that show nothing yet.
     pub frames_sent: u64,
-    /// Frames captured whole.
+    /// Frames of these captured whole.
     pub frames_captured: u64,
     /// Frames that the firmware looked at.
     pub frames_processed: u64,

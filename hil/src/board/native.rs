@@ -5,7 +5,7 @@ use fake_sensors::camera::Pose;
 use link::Parser;
 use pilot::{Outbox, Pilot};
 
-use super::camera::{Camera, LAST_LINE};
+use super::camera::Camera;
 use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog, FrameLog};
 
 /// The sensor's clock on the flight board, hertz.
@@ -70,7 +70,9 @@ impl Native {
             .next_edge()
             .filter(|due_ns| *due_ns < until_ns)
         {
-            if self.camera.take_edge(due_ns) == Some(LAST_LINE) {
+            let sent = self.camera.frames_sent();
+            self.camera.take_edge(due_ns);
+            if self.camera.frames_sent() > sent {
                 self.process_frame(due_ns);
             }
         }

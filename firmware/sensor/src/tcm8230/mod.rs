@@ -34,7 +34,7 @@ const LATENCY_FRAMES: u8 = 2;
 
 /// The first frame after a change of format is masked black (D_MASK), and the exposure written
 /// before it needs [`LATENCY_FRAMES`].
-const SETTLING_FRAMES: u8 = 1 + LATENCY_FRAMES;
+pub const SETTLING_FRAMES: u8 = 1 + LATENCY_FRAMES;
 
 /// Tries of one transfer before its error counts. A sensor that is between two states may refuse
 /// one; a sensor that is absent refuses all, soon.

@@ -13,7 +13,7 @@ use crate::ekf::Measurement;
 /// A message the app has taken from its UART.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Received {
-    /// When it was handled, ms; it may have waited in the buffer since the last cycle.
+    /// When it was handled, ms: at the end of the window in which it was read.
     pub at_ms: u64,
     /// What it says.
     pub message: Message,
@@ -54,6 +54,8 @@ pub struct Camera {
     handshake: Handshake,
     goal: Goal,
     corrections: Corrections,
+    /// Read in this window, not yet handled.
+    heard: Vec<Message>,
     received: Vec<Received>,
     states_sent: u32,
     commands_sent: u32,
@@ -67,6 +69,7 @@ impl Camera {
             handshake: Handshake::default(),
             goal: Goal::default(),
             corrections: Corrections::new(correction_sd),
+            heard: Vec::new(),
             received: Vec::new(),
             states_sent: 0,
             commands_sent: 0,
@@ -115,27 +118,33 @@ impl Camera {
 
     /// Stops reading.
     pub fn stop_listening(&mut self) {
+        self.heard.clear();
         self.uart.close_window();
     }
 
     /// One receive call; does nothing unless the app is reading.
+    pub fn listen(&mut self) {
+        self.heard.extend(self.uart.receive());
+    }
+
+    /// Does what the messages of this window ask for, in order; what they mean for the rest.
+    ///
+    /// The real app handles each message within the 10 ms in which it reads. Here all are handled at
+    /// the end, so that a flight does not depend on the microseconds of the camera's answer.
     ///
     /// # Errors
     /// [`NotFinite`] if a target or a correction is no number.
-    pub fn listen(
-        &mut self,
-        now_ms: u64,
-        estimate_m: Vector3<f32>,
-    ) -> Result<Option<News>, NotFinite> {
-        let Some(message) = self.uart.receive() else {
-            return Ok(None);
-        };
-        let handled = self.handle(&message, estimate_m);
-        self.received.push(Received {
-            at_ms: now_ms,
-            message,
-        });
-        handled
+    pub fn act(&mut self, now_ms: u64, estimate_m: Vector3<f32>) -> Result<Vec<News>, NotFinite> {
+        let mut news = Vec::new();
+        for message in std::mem::take(&mut self.heard) {
+            let handled = self.handle(&message, estimate_m);
+            self.received.push(Received {
+                at_ms: now_ms,
+                message,
+            });
+            news.extend(handled?);
+        }
+        Ok(news)
     }
 
     /// The messages handled since the last call, in order.

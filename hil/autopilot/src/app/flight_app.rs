@@ -216,17 +216,28 @@ impl FlightApp {
         if !self.camera.listening() {
             return;
         }
-        match self.camera.listen(now_ms, estimate.position_m) {
-            Ok(Some(News::ActiveSnapshot(index))) => self.mission.on_active_snapshot(index),
-            Ok(Some(News::Realigned(measurements))) => {
+        self.camera.listen();
+        if self.camera.listening() {
+            return;
+        }
+        match self.camera.act(now_ms, estimate.position_m) {
+            Ok(news) => {
+                for news in news {
+                    self.take(news, output);
+                }
+                self.issue_set_point();
+            }
+            Err(NotFinite) => self.begin_landing(now_ms, estimate, Outcome::BrokenMessage),
+        }
+    }
+
+    fn take(&mut self, news: News, output: &mut Output) {
+        match news {
+            News::ActiveSnapshot(index) => self.mission.on_active_snapshot(index),
+            News::Realigned(measurements) => {
                 self.mission.on_realignment();
                 output.measurements.extend(measurements);
             }
-            Ok(None) => {}
-            Err(NotFinite) => self.begin_landing(now_ms, estimate, Outcome::BrokenMessage),
-        }
-        if !self.camera.listening() {
-            self.issue_set_point();
         }
     }
 
