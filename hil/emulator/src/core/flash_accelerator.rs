@@ -229,7 +229,7 @@ mod tests {
     fn a_loop_of_64_lines_runs_from_the_cache_and_one_of_65_does_not() {
         for (lines, expected) in [(64, 0), (65, 65 * 5)] {
             let mut accelerator = accelerator(false, true);
-            let mut pass = |accelerator: &mut FlashAccelerator| -> u64 {
+            let pass = |accelerator: &mut FlashAccelerator| -> u64 {
                 (0..lines)
                     .map(|line| accelerator.enter_line(FLASH + 16 * line, 0))
                     .sum()

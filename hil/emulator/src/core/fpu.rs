@@ -87,10 +87,19 @@ impl Core {
 
     /// Before the first floating-point instruction of a context: fills the frame of the interrupted
     /// one and claims the registers. Until something changes, [`fpu_ready`](Core::fpu_ready) tells
-    /// that there is nothing to do.
+    /// that there is nothing to do. False: the run has stopped.
     #[cold]
     #[inline(never)]
-    pub(super) fn prepare_fpu(&mut self, memory: &mut Memory) -> Result<(), Cause> {
+    pub(super) fn prepare_fpu(&mut self, memory: &mut Memory) -> bool {
+        if let Err(cause) = self.claim_float_registers(memory) {
+            self.fail(cause);
+            return false;
+        }
+        self.fpu_ready = true;
+        true
+    }
+
+    fn claim_float_registers(&mut self, memory: &mut Memory) -> Result<(), Cause> {
         if !self.fpu.is_accessible() {
             return Err(Cause::FpuOff);
         }
@@ -100,7 +109,6 @@ impl Core {
         if self.fpu.context & ASPEN != 0 {
             self.registers.control.float_active = true;
         }
-        self.fpu_ready = true;
         Ok(())
     }
 

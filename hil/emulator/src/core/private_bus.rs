@@ -83,7 +83,7 @@ impl Core {
     /// Reads a register of the core. Only those with byte-wide fields may be read in parts.
     pub(super) fn read_private(&mut self, address: u32, width: Width) -> Option<u32> {
         let shift = address % 4 * 8;
-        let word = self.read_private_word(address % 0x1_0000 & !3)? >> shift;
+        let word = self.read_private_word((address % 0x1_0000) & !3)? >> shift;
         Some(match width {
             Width::Byte => word & 0xff,
             Width::Half => word & 0xffff,
@@ -136,17 +136,14 @@ impl Core {
             let first = u32::from(exception::FIRST_INTERRUPT);
             return self.priorities(offset - NVIC_IPR + first);
         }
-        let banks: [(u32, fn(&Self, usize) -> u32); 5] = [
-            (NVIC_ISER, |core, word| core.nvic.enabled[word]),
-            (NVIC_ICER, |core, word| core.nvic.enabled[word]),
-            (NVIC_ISPR, |core, word| core.nvic.pending_word(word)),
-            (NVIC_ICPR, |core, word| core.nvic.pending_word(word)),
-            (NVIC_IABR, |core, word| core.nvic.active_word(word)),
-        ];
-        let (word, read) = banks
-            .iter()
-            .find_map(|(first, read)| Some((bank(offset, *first)?, read)))?;
-        Some(read(self, word))
+        let nvic = &self.nvic;
+        if let Some(word) = bank(offset, NVIC_ISER).or(bank(offset, NVIC_ICER)) {
+            return Some(nvic.enabled[word]);
+        }
+        if let Some(word) = bank(offset, NVIC_ISPR).or(bank(offset, NVIC_ICPR)) {
+            return Some(nvic.pending_word(word));
+        }
+        bank(offset, NVIC_IABR).map(|word| nvic.active_word(word))
     }
 
     /// Four priorities in a word.

@@ -116,7 +116,7 @@ impl Core {
         let (n_top, m_top) = (i.immediate & 2 != 0, i.immediate & 1 != 0);
         let products = match i.operation {
             Operation::SmlaHalves => half(n, n_top) * half(m, m_top),
-            Operation::SmlaWide => word(n) * half(m, m_top) >> 16,
+            Operation::SmlaWide => (word(n) * half(m, m_top)) >> 16,
             _ => dual(i, n, m),
         };
         let sum = products + word(self.addend(i));

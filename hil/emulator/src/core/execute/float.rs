@@ -113,7 +113,7 @@ pub(super) fn to_half(bits: u32) -> u16 {
     /// Half of a step above the largest half, 65 504: from here on it is infinity.
     const OVERFLOW: f32 = 65_520.0;
     /// The smallest normal half.
-    const NORMAL: f32 = 6.103_515_625e-5;
+    const NORMAL: f32 = 1.0 / 16_384.0;
     let sign = (bits >> 16 & 0x8000) as u16;
     let magnitude = value(bits & !SIGN);
     let half = if magnitude.is_nan() {
@@ -125,7 +125,7 @@ pub(super) fn to_half(bits: u32) -> u16 {
     } else {
         let magnitude = magnitude.to_bits();
         let odd = magnitude >> 13 & 1;
-        ((magnitude + 0xfff + odd >> 13) - (112 << 10)) as u16
+        (((magnitude + 0xfff + odd) >> 13) - (112 << 10)) as u16
     };
     sign | half
 }

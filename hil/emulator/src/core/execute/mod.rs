@@ -6,6 +6,7 @@
 mod dsp;
 mod float;
 mod memory;
+mod multiple;
 mod operations;
 mod system;
 
@@ -84,10 +85,7 @@ impl Core {
             return false;
         }
         if guard.is_float() && !self.fpu_ready {
-            if let Err(cause) = self.prepare_fpu(memory) {
-                self.fail(cause);
-                return false;
-            }
+            return self.prepare_fpu(memory);
         }
         true
     }

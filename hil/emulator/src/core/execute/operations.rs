@@ -385,8 +385,18 @@ impl Core {
                 self.registers.pc = i.immediate.wrapping_add(2 * entry);
             }
 
-            Operation::Vldr => s!(d) = load!(u32, offset!()),
-            Operation::Vstr => self.store32(memory, bus, offset!(), s!(d)),
+            Operation::Vldr => {
+                let address = offset!();
+                if self.aligned(address) {
+                    s!(d) = load!(u32, address);
+                }
+            }
+            Operation::Vstr => {
+                let address = offset!();
+                if self.aligned(address) {
+                    self.store32(memory, bus, address, s!(d));
+                }
+            }
             Operation::VldrDouble => self.load_floats(memory, bus, offset!(), i.d, 2),
             Operation::VstrDouble => self.store_floats(memory, bus, offset!(), i.d, 2),
             Operation::Vldm | Operation::Vstm => self.float_multiple(memory, bus, i),
@@ -528,7 +538,7 @@ fn table(i: Instruction, n: u32) -> u32 {
 /// A mask of `width` ones, 1 to 32.
 #[inline(always)]
 pub(super) fn ones(width: u8) -> u32 {
-    u32::MAX >> (32 - u32::from(width) & 31)
+    u32::MAX >> ((32 - u32::from(width)) & 31)
 }
 
 /// Which half of an S register holds a half-precision number.
