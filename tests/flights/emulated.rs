@@ -1,0 +1,120 @@
+//! Flights of the image that would be flashed, on an emulated STM32F407. The image is built first.
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use hil::flight::{Flown, fly_emulated, fly_native};
+use hil::image;
+use hil::scenario::{Homing, Route, Scenario, Spacing};
+use tests::Budgets;
+
+/// The image; a machine that cannot build it fails every test here.
+fn elf() -> &'static [u8] {
+    static ELF: OnceLock<Vec<u8>> = OnceLock::new();
+    ELF.get_or_init(|| {
+        let path: PathBuf = image::build(&|line| eprintln!("{line}")).expect("the firmware builds");
+        std::fs::read(path).expect("the image is there")
+    })
+}
+
+fn scenario(route: Route) -> Scenario {
+    let spacing = Spacing::from_metres(2.0).expect("a spacing");
+    Scenario {
+        route,
+        world: "arena-panels".to_owned(),
+        seed: 1,
+        spacing,
+        homing: Homing::Both,
+    }
+}
+
+fn fly(route: Route) -> Flown {
+    fly_emulated(&scenario(route), elf(), &mut |_| ()).expect("a flight")
+}
+
+/// One flight for all tests that only look at it.
+fn corner() -> &'static Flown {
+    static FLOWN: OnceLock<Flown> = OnceLock::new();
+    FLOWN.get_or_init(|| fly(Route::Corner))
+}
+
+fn json(value: &impl serde::Serialize) -> String {
+    serde_json::to_string(value).expect("JSON")
+}
+
+#[test]
+fn native_and_emulated_flights_agree_to_the_bit() {
+    let (emulated, native) = (
+        &corner().recording,
+        fly_native(&scenario(Route::Corner), &mut |_| ())
+            .expect("a flight")
+            .recording,
+    );
+    assert!(
+        emulated.snapshots.len() >= 2
+            && emulated.vectors.len() > 100
+            && !emulated.corrections.is_empty()
+    );
+    assert_eq!(json(&emulated.snapshots), json(&native.snapshots));
+    assert_eq!(json(&emulated.vectors), json(&native.vectors));
+    assert_eq!(json(&emulated.corrections), json(&native.corrections));
+    assert_eq!(json(&emulated.track), json(&native.track));
+    let exposures = |recording: &hil::record::Recording| -> Vec<_> {
+        recording
+            .frames
+            .iter()
+            .map(|frame| (frame.luma.to_bits(), frame.lines, frame.gain.to_bits()))
+            .collect()
+    };
+    assert_eq!(exposures(emulated), exposures(&native));
+}
+
+#[test]
+fn an_emulated_flight_is_the_same_flight_every_time() {
+    let again = fly(Route::Corner);
+    assert_eq!(json(&corner().recording), json(&again.recording));
+}
+
+#[test]
+fn the_emulated_board_comes_home_without_losing_a_frame() {
+    let budgets = Budgets::load();
+    let summary = &corner().summary;
+    assert!(summary.completed, "{}", summary.outcome);
+    assert!(summary.frames_sent > 500);
+    budgets.hold("home_error_m", summary.home_error_m);
+    budgets.hold("frames_dropped", summary.frames_dropped as f64);
+}
+
+#[test]
+fn the_firmwares_cycle_counter_agrees_with_the_emulators() {
+    let budgets = Budgets::load();
+    let flown = corner();
+    let cycles = flown
+        .summary
+        .cycles_per_frame
+        .expect("an emulated flight has cycles");
+    assert_eq!(
+        flown.recording.frames.len() as u64,
+        flown.summary.frames_sent
+    );
+    budgets.hold(
+        "counter_disagreement_cycles",
+        f64::from(cycles.largest_disagreement),
+    );
+    budgets.hold("cycles_per_frame_p99", f64::from(cycles.p99));
+}
+
+#[test]
+fn the_image_keeps_to_its_budget_of_flash_ram_and_stack() {
+    let budgets = Budgets::load();
+    let firmware = corner()
+        .summary
+        .firmware
+        .expect("an emulated flight has an image");
+    budgets.hold("flash_bytes", f64::from(firmware.flash_bytes));
+    budgets.hold("ram_bytes", f64::from(firmware.ram_bytes));
+    budgets.hold(
+        "stack_peak_bytes",
+        f64::from(firmware.stack_peak_bytes.expect("the stack holds")),
+    );
+}

@@ -1,0 +1,105 @@
+//! Whole flights of the firmware's logic, compiled for this machine.
+
+use std::sync::OnceLock;
+
+use hil::flight::{Flown, fly_native};
+use hil::scenario::{Homing, Route, Scenario, Spacing};
+use tests::Budgets;
+
+fn scenario(route: Route, homing: Homing, seed: u64) -> Scenario {
+    let spacing = Spacing::from_metres(2.0).expect("a spacing");
+    Scenario {
+        route,
+        world: "arena-panels".to_owned(),
+        seed,
+        spacing,
+        homing,
+    }
+}
+
+fn fly(scenario: &Scenario) -> Flown {
+    fly_native(scenario, &mut |_| ()).expect("a flight")
+}
+
+/// The default flight, for all tests that look at it.
+fn u_route() -> &'static Flown {
+    static FLOWN: OnceLock<Flown> = OnceLock::new();
+    FLOWN.get_or_init(|| fly(&scenario(Route::U, Homing::Both, 1)))
+}
+
+#[test]
+fn the_u_route_is_followed_home_and_odometry_alone_gets_lost() {
+    let budgets = Budgets::load();
+    let with = &u_route().summary;
+    let without = fly(&scenario(Route::U, Homing::Odometry, 1)).summary;
+    assert!(with.completed, "{}", with.outcome);
+    assert!(without.completed, "{}", without.outcome);
+    budgets.hold("home_error_m", with.home_error_m);
+    budgets.hold("bytes_per_m", with.bytes_per_m);
+    budgets.hold("frames_dropped", with.frames_dropped as f64);
+    budgets.hold(
+        "improvement_over_odometry",
+        without.home_error_m / with.home_error_m,
+    );
+}
+
+#[test]
+fn the_u_route_is_56_m_long_and_stored_in_snapshots_two_metres_apart() {
+    let Flown { summary, recording } = u_route();
+    // The true path is a little longer than the way points': the drone swings.
+    assert!(
+        (56.0..62.0).contains(&summary.outbound_m),
+        "{} m",
+        summary.outbound_m
+    );
+    assert!(
+        (27..=31).contains(&summary.snapshots),
+        "{}",
+        summary.snapshots
+    );
+    let bytes = 18 * recording.snapshots.len() + 2 * recording.odometry.len();
+    assert_eq!(summary.memory_bytes, bytes);
+}
+
+#[test]
+fn the_same_seed_is_the_same_flight_and_another_seed_another() {
+    let flight = |seed| {
+        let mut flown = fly(&scenario(Route::Corner, Homing::Both, seed));
+        flown.summary.wall_s = 0.0;
+        flown.summary.realtime_factor = 0.0;
+        let json = |value| serde_json::to_string(&value).expect("JSON");
+        let summary = json(serde_json::to_value(&flown.summary).expect("JSON"));
+        (
+            summary,
+            json(serde_json::to_value(&flown.recording).expect("JSON")),
+        )
+    };
+    let first = flight(1);
+    assert_eq!(first, flight(1));
+    assert_ne!(first.1, flight(2).1);
+}
+
+#[test]
+fn snapshots_are_as_far_apart_as_the_command_says() {
+    let snapshots = |metres| {
+        let spacing = Spacing::from_metres(metres).expect("a spacing");
+        fly(&Scenario {
+            spacing,
+            ..scenario(Route::Line, Homing::Both, 1)
+        })
+        .summary
+        .snapshots
+    };
+    // At 0, 1, 2, 3, 4 m and at 0, 2, 4 m; the leg ends a little short of 5 m of odometry.
+    assert_eq!((snapshots(1.0), snapshots(2.0)), (5, 3));
+}
+
+#[test]
+fn the_horizon_is_exposed_to_80_of_255() {
+    let flown = fly(&scenario(Route::Line, Homing::Both, 1));
+    // The first second is the exposure's, on the ground.
+    let late = flown.recording.frames.iter().filter(|frame| frame.t > 1.0);
+    let lumas: Vec<f32> = late.map(|frame| frame.luma).collect();
+    let mean = lumas.iter().sum::<f32>() / lumas.len() as f32;
+    assert!((mean - 80.0).abs() < 3.0, "mean luma {mean}");
+}
