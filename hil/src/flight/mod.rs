@@ -135,7 +135,7 @@ fn fly(
         board.receive(&mut from_board);
         board.drain_log(&mut log);
         recorder.log(now_ms, log.drain(..));
-        if now_ms % PROGRESS_PERIOD_MS == 0 {
+        if now_ms.is_multiple_of(PROGRESS_PERIOD_MS) {
             let flight_s = now_ms as f64 / 1_000.0;
             progress(Progress {
                 fraction: (now_ms as f64 / expected_ms).min(1.0),

@@ -71,7 +71,7 @@ impl Recorder {
             self.app_phase = aircraft.phase();
             self.line(t, "app", "info", format!("{:?}", self.app_phase));
         }
-        if now_ms % TRACK_PERIOD_MS == 0 {
+        if now_ms.is_multiple_of(TRACK_PERIOD_MS) {
             self.recording.track.push(TrackPoint {
                 t,
                 phase: self.phase(),
