@@ -1,4 +1,4 @@
-//! What instructions cost in cycles, beyond the one that every instruction takes (ARM DDI0439 §3.3).
+//! What instructions cost in cycles, where it is not one (ARM DDI0439 §3.3).
 //!
 //! Left out: wait states of the peripheral buses, contention with DMA, the penalty of unaligned
 //! accesses, and floating-point results that are used at once.

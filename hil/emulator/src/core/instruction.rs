@@ -196,7 +196,7 @@ pub(super) enum Operation {
     Strexh,
     Clrex,
 
-    // ---- Branches; `immediate` is the target, of BL and BLX register the return address in `d`-less form
+    // ---- Branches; `immediate` is the target, of BLX the return address
     B,
     Bl,
     Bx,

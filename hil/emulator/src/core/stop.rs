@@ -38,6 +38,9 @@ pub enum Cause {
     /// An encoding whose effect the architecture leaves open.
     #[error("unpredictable instruction {0:#x}")]
     Unpredictable(u32),
+    /// MRS or MSR of a special register that does not exist, by its number.
+    #[error("special register {0} does not exist")]
+    SpecialRegister(u8),
     /// A load or store that nothing answers.
     #[error("bus fault: {} {address:#010x}", if *.write { "write to" } else { "read of" })]
     BusFault {

@@ -9,7 +9,7 @@ impl Core {
     pub(super) fn read_special(&mut self, i: Instruction) {
         match self.registers.special(i.immediate) {
             Some(value) => self.registers.r[usize::from(i.d & 15)] = value,
-            None => self.fail(Cause::Unpredictable(i.immediate)),
+            None => self.fail(Cause::SpecialRegister(i.immediate as u8)),
         }
     }
 
@@ -22,7 +22,7 @@ impl Core {
             .set_special(i.immediate, i.a, value)
             .is_none()
         {
-            return self.fail(Cause::Unpredictable(i.immediate));
+            return self.fail(Cause::SpecialRegister(i.immediate as u8));
         }
         self.fpu_ready = false;
         self.exceptions_changed();
