@@ -48,7 +48,8 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// The flight board: default lens, gamma off as the sensor driver sets it.
+    /// The flight board: default lens, gamma off as the sensor driver sets it. Luma above the black
+    /// level is then proportional to exposure; the sensor's contrast cancels in the control.
     pub const DEFAULT: Self = Self {
         lens: LensCalibration::DEFAULT,
         exposure: ExposureParameters {
@@ -90,6 +91,9 @@ pub struct Pilot {
 
 impl Pilot {
     /// A pilot on the ground: idle, with an empty route.
+    ///
+    /// # Errors
+    /// [`CalibrationError`] where the lens makes no sense.
     pub fn new(parameters: &Parameters) -> Result<Self, CalibrationError> {
         Ok(Self {
             map: PanoramaMap::new(&parameters.lens)?,
@@ -122,7 +126,7 @@ impl Pilot {
         &self.navigator
     }
 
-    /// Hears a message; the answer goes to the outbox. `now_ms` may wrap.
+    /// Hears a message; the answer is added to the outbox. `now_ms` are milliseconds and may wrap.
     ///
     /// Nothing is said before the autopilot has spoken: what a Crazyflie on the ground receives
     /// waits in its buffer and is taken for fresh at take-off.
@@ -142,14 +146,17 @@ impl Pilot {
         Events::new()
     }
 
-    /// Takes a command and says which mode holds now: the same byte if it was understood.
+    /// Takes a command and says which mode holds now: the same byte if it was understood. An unknown
+    /// one changes nothing.
+    ///
+    /// The first argument, where there is one and it is not zero, is the way between two snapshots
+    /// along odometry from now on, in decimetres. The published client sends no arguments.
     fn on_command(&mut self, command: &link::Command, outbox: &mut Outbox) {
-        if let Some(decimetres) = command.args.first().copied().filter(|spacing| *spacing > 0) {
+        let understood = self.navigator.command(command.command).is_ok();
+        if let (true, Some(decimetres)) = (understood, command.args.first()) {
             self.navigator
-                .set_snapshot_spacing(f32::from(decimetres) / 10.0);
+                .set_snapshot_spacing(f32::from(*decimetres) / 10.0);
         }
-        // An unknown byte changes nothing; the answer shows that.
-        let _ = self.navigator.command(command.command);
         self.say_mode(outbox);
     }
 

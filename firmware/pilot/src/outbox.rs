@@ -10,23 +10,18 @@ pub const PERIOD_BYTES: usize = 200;
 #[derive(Debug, Default)]
 pub struct Outbox {
     bytes: Vec<u8, PERIOD_BYTES>,
-    dropped: u32,
 }
 
 impl Outbox {
     /// An empty outbox.
     pub const fn new() -> Self {
-        Self {
-            bytes: Vec::new(),
-            dropped: 0,
-        }
+        Self { bytes: Vec::new() }
     }
 
-    /// Appends one whole frame, or drops it whole and counts it.
-    pub fn push(&mut self, frame: &[u8]) {
-        if self.bytes.extend_from_slice(frame).is_err() {
-            self.dropped = self.dropped.saturating_add(1);
-        }
+    /// Appends one whole frame, or none of it where it does not fit: half a frame would spoil the
+    /// one after it. The fullest answer, vector, correction, map and mode, takes 118 bytes.
+    pub(crate) fn push(&mut self, frame: &[u8]) {
+        let _ = self.bytes.extend_from_slice(frame);
     }
 
     /// The frames, back to back.
@@ -34,13 +29,8 @@ impl Outbox {
         &self.bytes
     }
 
-    /// Forgets the frames (they are on the wire); the count of dropped ones stays.
+    /// Forgets the frames: they are on the wire.
     pub fn clear(&mut self) {
         self.bytes.clear();
-    }
-
-    /// Frames that did not fit, since the start.
-    pub fn dropped(&self) -> u32 {
-        self.dropped
     }
 }
