@@ -115,8 +115,9 @@ pub struct Map {
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InsCorrection {
-    /// Number of the snapshot that was recognised. The autopilot applies each new number once, and
-    /// never the number 0 as the first.
+    /// What tells two corrections apart. The published list names it for the snapshot that was
+    /// recognised, but the autopilot applies a number only where it differs from the last one it
+    /// applied (at first 0): at the same snapshot a second correction needs another number.
     pub snapshot_index: u16,
     /// Believed place, metres east.
     pub e_from: f32,

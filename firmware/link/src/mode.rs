@@ -20,7 +20,7 @@ pub enum Mode {
     Clear,
     /// 0x01 to 0x07: record while the autopilot flies.
     Record(Record),
-    /// 0x11: fly back along the route and stay at its start, or home to a single snapshot for ever.
+    /// 0x11: home to the last snapshot and stay there.
     FollowAndStay,
     /// 0x12: fly back along the route.
     Follow,
@@ -47,7 +47,7 @@ impl Record {
     pub const ROUTE: Self = Self::new(true, true, false);
     /// A dense sequence of snapshots without odometry (0x05).
     pub const SEQUENCE: Self = Self::new(true, false, true);
-    /// A dense sequence of snapshots with odometry (0x07).
+    /// The same with odometry (0x07). The camera records it as it does [`Self::ROUTE`].
     pub const SEQUENCE_WITH_ODOMETRY: Self = Self::new(true, true, true);
 
     const fn new(snapshots: bool, odometry: bool, sequence: bool) -> Self {
@@ -76,29 +76,6 @@ impl Mode {
             Self::Follow => 0x12,
         }
     }
-
-    /// The mode a command byte asks for; `None` for a byte no operator's button sends.
-    ///
-    /// Clear shares its low bits with the recording modes, so it is recognised first.
-    pub const fn from_byte(byte: u8) -> Option<Self> {
-        match byte {
-            0x00 => Some(Self::Idle),
-            0x0f => Some(Self::Clear),
-            0x01..=0x07 => Some(Self::Record(Record {
-                snapshots: byte & SNAPSHOTS != 0,
-                odometry: byte & ODOMETRY != 0,
-                sequence: byte & SEQUENCE != 0,
-            })),
-            0x11 => Some(Self::FollowAndStay),
-            0x12 => Some(Self::Follow),
-            _ => None,
-        }
-    }
-
-    /// Whether the camera steers in this mode.
-    pub const fn follows(self) -> bool {
-        matches!(self, Self::FollowAndStay | Self::Follow)
-    }
 }
 
 #[cfg(test)]
@@ -106,22 +83,19 @@ mod tests {
     use super::{Mode, Record};
 
     #[test]
-    fn every_button_of_the_operator_has_a_mode_that_gives_its_byte_back() {
-        for byte in [0x00, 0x0f, 0x01, 0x05, 0x02, 0x03, 0x07, 0x11, 0x12] {
-            assert_eq!(Mode::from_byte(byte).map(Mode::byte), Some(byte));
-        }
-    }
-
-    #[test]
-    fn clear_is_not_a_recording_mode() {
-        assert_eq!(Mode::from_byte(0x0f), Some(Mode::Clear));
-        assert_eq!(Mode::from_byte(0x03), Some(Mode::Record(Record::ROUTE)));
-    }
-
-    #[test]
-    fn bytes_without_a_button_have_no_mode() {
-        for byte in [0x08, 0x0e, 0x10, 0x13, 0x1f, 0xff] {
-            assert_eq!(Mode::from_byte(byte), None);
+    fn every_button_of_the_operator_has_a_mode_with_its_byte() {
+        for (mode, byte) in [
+            (Mode::Idle, 0x00),
+            (Mode::Clear, 0x0f),
+            (Mode::Record(Record::SINGLE_SNAPSHOT), 0x01),
+            (Mode::Record(Record::SEQUENCE), 0x05),
+            (Mode::Record(Record::ODOMETRY), 0x02),
+            (Mode::Record(Record::ROUTE), 0x03),
+            (Mode::Record(Record::SEQUENCE_WITH_ODOMETRY), 0x07),
+            (Mode::FollowAndStay, 0x11),
+            (Mode::Follow, 0x12),
+        ] {
+            assert_eq!(mode.byte(), byte);
         }
     }
 }

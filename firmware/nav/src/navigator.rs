@@ -44,14 +44,9 @@ enum Activity {
 impl Navigator {
     /// An idle navigator with an empty route.
     pub const fn new(parameters: Parameters) -> Self {
-        Self::with_route(parameters, Route::new())
-    }
-
-    /// An idle navigator that knows a route.
-    pub const fn with_route(parameters: Parameters, route: Route) -> Self {
         Self {
             parameters,
-            route,
+            route: Route::new(),
             mode: Mode::Idle,
             activity: Activity::Resting,
             realigner: Realigner::new(),

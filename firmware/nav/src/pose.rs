@@ -1,7 +1,5 @@
 //! Where the drone believes it is, in the plane.
 
-use core::f32::consts::{PI, TAU};
-
 use nalgebra::Point2;
 
 /// The farthest coordinate taken for real, metres. Beyond it an f32 no longer resolves a millimetre,
@@ -32,31 +30,9 @@ impl Pose {
     }
 }
 
-/// The same angle in [-π, π). Not finite in, not finite out.
-pub fn wrap_angle(angle: f32) -> f32 {
-    let wrapped = angle - TAU * libm::floorf((angle + PI) / TAU);
-    // Rounding may leave the interval by one unit in the last place.
-    if wrapped >= PI {
-        wrapped - TAU
-    } else {
-        wrapped
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn wrapping_keeps_the_direction() {
-        for tenths in -200..200 {
-            let angle = tenths as f32 * 0.1;
-            let wrapped = wrap_angle(angle);
-            assert!((-PI..PI).contains(&wrapped), "{angle} became {wrapped}");
-            assert!((libm::sinf(angle) - libm::sinf(wrapped)).abs() < 1e-5);
-            assert!((libm::cosf(angle) - libm::cosf(wrapped)).abs() < 1e-5);
-        }
-    }
 
     #[test]
     fn a_pose_that_is_not_finite_is_not_plausible() {
