@@ -69,6 +69,9 @@ impl Retained {
             image,
             epoch_ms,
         };
+        // Whole again at once: a fault of the hardware that lasts may end this run, too, before the
+        // first frame or message.
+        retained.mark_whole(epoch_ms);
         Ok((retained, kept))
     }
 
@@ -77,13 +80,17 @@ impl Retained {
     pub fn change<R>(&mut self, at: Instant, change: impl FnOnce(&mut Pilot, u32) -> R) -> R {
         // The pilot's clock wraps after 49 days.
         let now_ms = self.epoch_ms.wrapping_add(at.as_millis() as u32);
-        let vault = vault();
-        vault.mark.store(NOT_WHOLE, Ordering::Relaxed);
+        vault().mark.store(NOT_WHOLE, Ordering::Relaxed);
         compiler_fence(Ordering::SeqCst);
         let result = change(self.pilot, now_ms);
+        self.mark_whole(now_ms);
+        result
+    }
+
+    fn mark_whole(&self, now_ms: u32) {
+        let vault = vault();
         vault.clock_ms.store(now_ms, Ordering::Relaxed);
         vault.mark.store(self.image, Ordering::Release);
-        result
     }
 
     /// The pilot, to look at.

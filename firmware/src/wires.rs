@@ -5,7 +5,7 @@ use embassy_sync::channel::Channel;
 use embassy_sync::pipe::Pipe;
 use embassy_sync::signal::Signal;
 use embassy_time::Instant;
-use pilot::Exposure;
+use pilot::{Exposure, PERIOD_BYTES};
 
 use crate::capture::Frame;
 
@@ -40,5 +40,5 @@ pub static SENSOR_SILENT: Signal<CriticalSectionRawMutex, ()> = Signal::new();
 /// Exposure to camera: the sensor was set up again, and so many frames show nothing yet.
 pub static SENSOR_STARTED: Signal<CriticalSectionRawMutex, u8> = Signal::new();
 
-/// Vision to the link's transmitter. Two periods of what the autopilot can take (200 bytes each).
-pub static OUTGOING: Pipe<CriticalSectionRawMutex, 400> = Pipe::new();
+/// Vision to the link's transmitter. Two periods of what the autopilot can take.
+pub static OUTGOING: Pipe<CriticalSectionRawMutex, { 2 * PERIOD_BYTES }> = Pipe::new();

@@ -4,7 +4,7 @@ use core::future::Future;
 
 use embassy_futures::select::{Either3, select3};
 use embassy_stm32::i2c;
-use embassy_time::{Duration, TimeoutError, Timer, with_timeout};
+use embassy_time::{Duration, Instant, TimeoutError, Timer, with_timeout};
 use pilot::Exposure;
 use sensor::{ImageSensor, Tcm8230};
 
@@ -23,6 +23,9 @@ const FAILURES_TO_RESET: u32 = 3;
 /// Pause before a sensor that did not answer is asked again.
 const RETRY: Duration = Duration::from_millis(100);
 
+/// Least time between two warnings: an absent sensor fails nine times a second. Every fault counts.
+const WARNING_PERIOD: Duration = Duration::from_secs(1);
+
 /// Keeps the sensor running with the exposure that was wanted last. A write takes 0.4 ms and is
 /// latched with the next frame; a failed one holds the last shutter and is repeated. A sensor that
 /// is absent or silent is reset and set up again, for ever: the link does not wait for it.
@@ -30,11 +33,15 @@ const RETRY: Duration = Duration::from_millis(100);
 pub async fn exposure(port: SensorPort, initial: Exposure) {
     let mut power = SensorPower::new(port);
     let mut wanted = initial;
+    let mut last_warning: Option<Instant> = None;
     loop {
         check_in(Member::Exposure);
         let fault = run(&mut power, &mut wanted).await;
         COUNTERS.sensor_faults.count();
-        defmt::warn!("image sensor: {}, starting it again", fault);
+        if last_warning.is_none_or(|last| last.elapsed() >= WARNING_PERIOD) {
+            last_warning = Some(Instant::now());
+            defmt::warn!("image sensor: {}, starting it again", fault);
+        }
         Timer::after(RETRY).await;
     }
 }
