@@ -29,11 +29,6 @@ pub type Weights = [f32; STORED_FREQUENCIES];
 /// Every frequency counts as it is: the plain sum of squared differences by Parseval's theorem.
 pub const FLAT_WEIGHTS: Weights = [1.0; STORED_FREQUENCIES];
 
-/// Weights k^`exponent`. Negative exponents widen the catchment area and cost accuracy.
-pub fn power_weights(exponent: f32) -> Weights {
-    core::array::from_fn(|index| libm::powf((index + 1) as f32, exponent))
-}
-
 /// How homing is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HomingParameters {

@@ -133,12 +133,6 @@ fn the_rotation_search_keeps_to_its_bound() {
 }
 
 #[test]
-fn flat_weights_are_the_zeroth_power() {
-    assert_eq!(power_weights(0.0), FLAT_WEIGHTS);
-    assert_eq!(power_weights(-1.0)[3], 0.25);
-}
-
-#[test]
 fn darkness_gives_no_vector() {
     let here = Place::new(1).view([0.0, 0.0], 0.0);
     let dark = Spectrum::from_coefficients([Complex::new(0.1, 0.0); VIEW_FREQUENCIES]);

@@ -33,7 +33,7 @@ const MAX_LINES: u16 = 525;
 const LATENCY_FRAMES: u8 = 2;
 
 /// The first frame after a change of format is masked black (D_MASK), and the exposure written
-/// before it needs [`LATENCY_FRAMES`].
+/// before it needs [`latency_frames`](ImageSensor::latency_frames).
 pub const SETTLING_FRAMES: u8 = 1 + LATENCY_FRAMES;
 
 /// Tries of one transfer before its error counts. A sensor that is between two states may refuse
