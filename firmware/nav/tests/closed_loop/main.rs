@@ -143,7 +143,7 @@ fn by_odometry_alone_most_flights_do_not() {
 }
 
 #[test]
-fn the_u_route_takes_less_than_twenty_bytes_a_metre() {
+fn the_u_route_takes_no_more_memory_than_in_the_paper() {
     let mut flight = Flight::new(1);
     flight.command(BOTH);
     flight.fly_out(u_route());
