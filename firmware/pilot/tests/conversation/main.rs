@@ -6,7 +6,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use bench::{Bench, mode, patches, uniform};
 use link::{Message, Mode, Record};
-use pilot::Event;
+use pilot::{Event, PERIOD_BYTES};
 use proptest::prelude::*;
 
 const ROUTE: u8 = Mode::Record(Record::ROUTE).byte();
@@ -221,6 +221,24 @@ fn on_the_way_home_each_state_is_answered_by_a_vector_and_the_rest_in_order_of_n
         assert_eq!(ranks.first(), Some(&0), "{answer:?}");
         assert!(ranks.windows(2).all(|pair| pair[0] < pair[1]), "{answer:?}");
     }
+}
+
+#[test]
+fn the_fullest_answer_and_an_echo_fit_into_one_period() {
+    let snapshot = link::Map {
+        snapshot_ak_bk: [1; 16].into_iter().collect(),
+        ..Default::default()
+    };
+    let answer = [
+        Message::Vector(Default::default()),
+        Message::InsCorrection(Default::default()),
+        Message::Map(snapshot),
+        mode(FOLLOW),
+    ];
+    let bytes = |message: &Message| message.encode().len();
+    let answer: usize = answer.iter().map(bytes).sum();
+    assert_eq!(answer, 118);
+    assert!(answer + bytes(&mode(FOLLOW)) <= PERIOD_BYTES);
 }
 
 #[test]
