@@ -40,6 +40,8 @@ pub struct Mission {
     steps: std::vec::IntoIter<Step>,
     /// The step that is being flown; `None` at the end of the script.
     step: Option<Step>,
+    /// Who leads in this step, and after the last one until the drone lands.
+    phase: Phase,
     progress: Progress,
 }
 
@@ -73,9 +75,11 @@ impl Mission {
     /// The script from its first step on.
     pub fn new(script: Script, settings: Settings) -> Self {
         let mut steps = script.steps.into_iter();
+        let step = steps.next();
         Self {
             settings,
-            step: steps.next(),
+            phase: step.as_ref().map_or(Phase::Recording, phase),
+            step,
             steps,
             progress: Progress::default(),
         }
@@ -83,10 +87,7 @@ impl Mission {
 
     /// Whether the script or the camera leads.
     pub fn phase(&self) -> Phase {
-        match self.step {
-            Some(Step::Follow { .. }) => Phase::Following,
-            _ => Phase::Recording,
-        }
+        self.phase
     }
 
     /// The camera has turned to a snapshot.
@@ -121,6 +122,7 @@ impl Mission {
         };
         if done {
             self.step = self.steps.next();
+            self.phase = self.step.as_ref().map_or(self.phase, phase);
             self.progress = Progress::default();
         } else {
             self.step = Some(step);
@@ -183,6 +185,14 @@ impl Mission {
             }
             Until::Elapsed(limit_ms) => elapsed_ms >= limit_ms,
         }
+    }
+}
+
+/// Who leads in a step.
+fn phase(step: &Step) -> Phase {
+    match step {
+        Step::Follow { .. } => Phase::Following,
+        Step::Command { .. } | Step::FlyTo { .. } => Phase::Recording,
     }
 }
 
