@@ -8,19 +8,28 @@ use std::path::{Path, PathBuf};
 use crate::flight::Flown;
 use crate::record::Recording;
 use crate::report;
-use crate::summary::Summary;
+use crate::scenario::Scenario;
 
 /// Where a flight goes unless it is told otherwise.
-pub fn default_path(summary: &Summary) -> PathBuf {
+pub fn default_path(scenario: &Scenario, backend: &str) -> PathBuf {
     Path::new("flights").join(format!(
-        "{}-{}-{}",
-        summary.route, summary.backend, summary.seed
+        "{}-{backend}-{}",
+        scenario.route.name(),
+        scenario.seed
     ))
 }
 
-/// Writes `summary.json`, `flight.log`, `recording.json`, `report.html` and `map.svg`.
-pub fn write(folder: &Path, flown: &Flown) -> io::Result<()> {
+/// Makes the folder and tries whether a file can be written in it.
+pub fn prepare(folder: &Path) -> io::Result<()> {
     fs::create_dir_all(folder)?;
+    let probe = folder.join(".writable");
+    fs::write(&probe, "")?;
+    fs::remove_file(probe)
+}
+
+/// Writes `summary.json`, `flight.log`, `recording.json`, `report.html` and `map.svg` into a folder
+/// that is [prepared](prepare).
+pub fn write(folder: &Path, flown: &Flown) -> io::Result<()> {
     fs::write(
         folder.join("summary.json"),
         serde_json::to_string_pretty(&flown.summary)? + "\n",

@@ -58,7 +58,8 @@ pub enum Homing {
     Both,
     /// Odometry alone: what the paper compares with
     Odometry,
-    /// Homing from snapshot to snapshot, without odometry (Fig. 6C)
+    /// Homing from snapshot to snapshot, 0.25 m apart, without odometry (Fig. 6C); for short routes:
+    /// where a snapshot is missed nothing leads to the next
     Sequence,
 }
 
@@ -91,10 +92,23 @@ pub struct Scenario {
     pub world: String,
     /// Seed of world, sensors and camera noise.
     pub seed: u64,
-    /// Between snapshots.
+    /// Between snapshots along odometry; a sequence has the firmware's own spacing.
     pub spacing: Spacing,
     /// How the drone finds back.
     pub homing: Homing,
+}
+
+impl Scenario {
+    /// The distance between snapshots that holds in this flight, metres.
+    pub fn snapshot_spacing_m(&self) -> f64 {
+        match self.homing {
+            Homing::Both | Homing::Odometry => self.spacing.metres(),
+            Homing::Sequence => pilot::Parameters::DEFAULT
+                .navigator
+                .sequence_spacing_m
+                .into(),
+        }
+    }
 }
 
 /// Distance between snapshots, in the firmware's unit of 0.1 m, so that it can be asked for on the
@@ -105,12 +119,14 @@ pub struct Spacing {
 }
 
 impl Spacing {
-    /// From metres; `None` unless within 0.2..=10 m.
+    /// From metres; `None` unless a multiple of 0.1 m within 0.2..=10 m.
     pub fn from_metres(metres: f64) -> Option<Self> {
         // Closer than 0.2 m there is no odometry between snapshots; beyond 10 m an odometry vector
         // of 12.7 m at most could not span a leg.
-        (0.2..=10.0).contains(&metres).then(|| Self {
-            decimetres: (metres * 10.0).round() as u8,
+        let decimetres = metres * 10.0;
+        let whole = (decimetres - decimetres.round()).abs() < 1e-6;
+        (whole && (0.2..=10.0).contains(&metres)).then(|| Self {
+            decimetres: decimetres.round() as u8,
         })
     }
 

@@ -28,7 +28,7 @@ pub struct Arguments {
     #[command(flatten)]
     scenario: ScenarioArguments,
     /// How many seeds
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     seeds: u64,
     /// The first seed
     #[arg(long, default_value_t = 1)]
@@ -80,9 +80,9 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
         improvement,
     };
     if arguments.json {
-        println!("{}", serde_json::to_string(&outcome)?);
+        console.result(&serde_json::to_string(&outcome)?)?;
     } else {
-        print(&outcome);
+        console.result(&in_words(&outcome))?;
     }
     Ok(all_completed)
 }
@@ -94,7 +94,9 @@ fn fly_all(
     homing: Homing,
     console: &Console,
 ) -> Result<Statistics, FlightError> {
-    let seeds: Vec<u64> = (arguments.first..).take(arguments.seeds as usize).collect();
+    let seeds: Vec<u64> = (0..arguments.seeds)
+        .map(|index| arguments.first.wrapping_add(index))
+        .collect();
     let mut progress = console.progress("Flying", arguments.seeds);
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();
@@ -163,12 +165,14 @@ fn statistics(homing: Homing, summaries: &[Summary]) -> Statistics {
     }
 }
 
-fn print(outcome: &Outcome) {
-    println!(
+/// The statistics for people, without a newline at the end.
+fn in_words(outcome: &Outcome) -> String {
+    let mut lines = vec![
         "homing     flights  completed  <= 0.5 m   mean m    p50 m    p95 m  path rms m  bytes/m"
-    );
+            .to_owned(),
+    ];
     for row in &outcome.settings {
-        println!(
+        lines.push(format!(
             "{:<10} {:>7}  {:>9}  {:>8} {:>8.2} {:>8.2} {:>8.2} {:>11.2} {:>8.1}",
             row.homing,
             row.flights,
@@ -179,9 +183,12 @@ fn print(outcome: &Outcome) {
             row.p95_home_error_m,
             row.mean_cross_track_rms_m,
             row.mean_bytes_per_m
-        );
+        ));
     }
     if let Some(improvement) = outcome.improvement {
-        println!("homing makes the mean home error {improvement:.1} times smaller");
+        lines.push(format!(
+            "homing makes the mean home error {improvement:.1} times smaller"
+        ));
     }
+    lines.join("\n")
 }

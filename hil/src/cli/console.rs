@@ -1,7 +1,7 @@
-//! What people see while the rig works: status lines and a progress bar on stderr, coloured only on
-//! a terminal. Results go to stdout and never pass through here.
+//! What the rig says: results on stdout; status lines and a progress bar on stderr, coloured only on
+//! a terminal.
 
-use std::io::{IsTerminal, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::time::Duration;
 
 use anstyle::{AnsiColor, Style};
@@ -33,6 +33,15 @@ impl Console {
     /// An error, for people.
     pub fn error(&self, text: &str) {
         let _ = writeln!(anstream::stderr(), "{ERROR}error{ERROR:#}: {text}");
+    }
+
+    /// A result on stdout. A reader that has read enough (`hil ... | head -1`) is no error.
+    pub fn result(&self, text: &str) -> io::Result<()> {
+        let mut stdout = io::stdout().lock();
+        match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+            written => written,
+        }
     }
 
     /// A bar on a terminal, a line now and then elsewhere.

@@ -23,6 +23,16 @@ pub enum Backend {
     Native,
 }
 
+impl Backend {
+    /// The name on the command line and in the summary.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Emulator => "emulator",
+            Self::Native => "native",
+        }
+    }
+}
+
 /// What is to be flown; shared by `fly` and `campaign`.
 #[derive(Clone, Debug, Args)]
 pub struct ScenarioArguments {
@@ -32,7 +42,7 @@ pub struct ScenarioArguments {
     /// The world
     #[arg(long, default_value = "arena-panels", value_parser = PossibleValuesParser::new(fake_sensors::world::WORLD_NAMES))]
     pub world: String,
-    /// Metres between snapshots
+    /// Metres between snapshots, in steps of 0.1; a sequence has its own spacing, 0.25 m
     #[arg(long, default_value = "2", value_parser = parse_spacing, value_name = "METRES")]
     pub spacing: Spacing,
     /// How the drone finds back
@@ -57,15 +67,19 @@ fn parse_spacing(text: &str) -> Result<Spacing, String> {
     text.parse()
         .ok()
         .and_then(Spacing::from_metres)
-        .ok_or_else(|| "a distance from 0.2 to 10 metres; the paper flies 1 or 2".to_owned())
+        .ok_or_else(|| {
+            "a distance from 0.2 to 10 metres in steps of 0.1; the paper flies 1 or 2".to_owned()
+        })
 }
 
 /// Options of `hil fly`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
-    cargo fly                                   the paper's U on the emulated board\n  \
-    cargo fly --backend native --seed 7         the same logic, without a processor\n  \
-    cargo fly --route s --spacing 1 --json      one JSON object on stdout\n\n\
+    hil fly                                 the paper's U on the emulated board\n  \
+    hil fly --backend native --seed 7       the same logic, without a processor\n  \
+    hil fly --route s --spacing 1 --json    one JSON object on stdout\n  \
+    hil fly --route line --homing sequence  home by the camera alone\n\n\
+    In a checkout, `cargo fly` is `hil fly`, built first.\n\
     Exit code 0: the drone came home. 1: it did not. 2: the flight could not be flown.")]
 pub struct Arguments {
     #[command(flatten)]
@@ -76,47 +90,67 @@ pub struct Arguments {
     /// Seed of world, sensors and camera noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Folder for summary.json, flight.log, recording.json and report.html [default: flights/ROUTE-BACKEND-SEED]
+    /// Folder for summary.json, flight.log, recording.json, report.html and map.svg [default: flights/ROUTE-BACKEND-SEED]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Ends with one JSON object, the summary, on stdout
     #[arg(long)]
     json: bool,
-    /// An image that is already built
+    /// An image that is already built [default: this checkout's, built first]
     #[arg(long, value_name = "ELF")]
     firmware: Option<PathBuf>,
 }
 
 pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     let scenario = arguments.scenario.scenario(arguments.seed);
-    let flown = match arguments.backend {
-        Backend::Native => {
-            with_progress(console, |progress| flight::fly_native(&scenario, progress))?
-        }
-        Backend::Emulator => {
-            let elf = match &arguments.firmware {
-                Some(elf) => elf.clone(),
-                None => image::build(&|line| console.status("Firmware", line))?,
-            };
-            let bytes =
-                std::fs::read(&elf).map_err(|error| format!("{}: {error}", elf.display()))?;
-            with_progress(console, |progress| {
-                flight::fly_emulated(&scenario, &bytes, progress)
-            })?
-        }
-    };
     let out = arguments
         .out
         .clone()
-        .unwrap_or_else(|| folder::default_path(&flown.summary));
-    folder::write(&out, &flown).map_err(|error| format!("{}: {error}", out.display()))?;
+        .unwrap_or_else(|| folder::default_path(&scenario, arguments.backend.name()));
+    let unwritable = |error| format!("{}: {error}", out.display());
+    let image = match arguments.backend {
+        Backend::Native => None,
+        Backend::Emulator => Some(Image::get(arguments.firmware.clone(), console)?),
+    };
+    // Before the flight: minutes in the air are not to be lost to a folder that cannot be written.
+    folder::prepare(&out).map_err(unwritable)?;
+    let flown = match &image {
+        None => with_progress(console, |progress| flight::fly_native(&scenario, progress))?,
+        Some(image) => with_progress(console, |progress| {
+            flight::fly_emulated(&scenario, &image.bytes, progress)
+        })
+        .map_err(|error| image.failure(error))?,
+    };
+    folder::write(&out, &flown).map_err(unwritable)?;
     console.status("Report", &out.join("report.html").display().to_string());
     if arguments.json {
-        println!("{}", serde_json::to_string(&flown.summary)?);
+        console.result(&serde_json::to_string(&flown.summary)?)?;
     } else {
-        print(&flown.summary);
+        console.result(&in_words(&flown.summary))?;
     }
     Ok(flown.summary.completed)
+}
+
+/// A firmware image and where it came from.
+struct Image {
+    elf: PathBuf,
+    bytes: Vec<u8>,
+}
+
+impl Image {
+    /// The image that was given, or else the one of this checkout.
+    fn get(given: Option<PathBuf>, console: &Console) -> Result<Self, Failure> {
+        let elf = match given {
+            Some(elf) => elf,
+            None => image::build(&|line| console.status("Firmware", line))?,
+        };
+        let bytes = std::fs::read(&elf).map_err(|error| format!("{}: {error}", elf.display()))?;
+        Ok(Self { elf, bytes })
+    }
+
+    fn failure(&self, error: FlightError) -> Failure {
+        format!("{}: {error}", self.elf.display()).into()
+    }
 }
 
 /// Flies with a progress bar.
@@ -132,15 +166,15 @@ fn with_progress(
     result
 }
 
-/// The summary for people.
-fn print(summary: &Summary) {
+/// The summary for people, without a newline at the end.
+fn in_words(summary: &Summary) -> String {
     let verdict = if summary.completed {
         "home"
     } else {
         "NOT HOME"
     };
-    println!("{verdict}: {}", summary.outcome);
-    let row = |name: &str, value: String| println!("  {name:<22}{value}");
+    let mut lines = vec![format!("{verdict}: {}", summary.outcome)];
+    let mut row = |name: &str, value: String| lines.push(format!("  {name:<22}{value}"));
     row(
         "home error",
         format!(
@@ -201,4 +235,5 @@ fn print(summary: &Summary) {
             summary.realtime_factor, summary.wall_s
         ),
     );
+    lines.join("\n")
 }

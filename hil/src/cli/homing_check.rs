@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::Failure;
+use super::console::Console;
 use crate::homing_check;
 
 /// Options of `hil homing-check`.
@@ -21,23 +22,23 @@ pub struct Arguments {
     json: bool,
 }
 
-pub fn run(arguments: &Arguments) -> Result<bool, Failure> {
+pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     let text = std::fs::read_to_string(&arguments.file)
         .map_err(|error| format!("{}: {error}", arguments.file.display()))?;
     let report = homing_check::check(&text)
         .map_err(|error| format!("{}: {error}", arguments.file.display()))?;
     if arguments.json {
-        println!("{}", serde_json::to_string(&report)?);
+        console.result(&serde_json::to_string(&report)?)?;
     } else {
         for failure in &report.failures {
-            println!("line {}: {}", failure.line, failure.reason);
+            console.result(&format!("line {}: {}", failure.line, failure.reason))?;
         }
-        println!(
+        console.result(&format!(
             "{} of {} records hold; largest deviation of h {:.1e}",
             report.records - report.failed.len(),
             report.records,
             report.worst_h
-        );
+        ))?;
     }
     Ok(report.failed.is_empty())
 }

@@ -16,7 +16,18 @@ use console::Console;
 
 /// The rig of Cataglyphis: flies the firmware in closed loop and reports.
 #[derive(Debug, Parser)]
-#[command(name = "hil", version, arg_required_else_help = true)]
+#[command(
+    name = "hil",
+    bin_name = "hil",
+    version,
+    arg_required_else_help = true,
+    after_help = "Examples:\n  \
+        hil fly                               the paper's U on the emulated board\n  \
+        hil campaign --compare                20 seeds, with homing and by odometry alone\n  \
+        hil homing-check tests/golden/data/homing.jsonl\n\n\
+        In a checkout, `cargo fly` builds and runs `hil fly`.\n\
+        Exit code 0: what was asked for is true. 1: it is not. 2: it could not be done."
+)]
 struct Cli {
     #[command(subcommand)]
     verb: Verb,
@@ -44,7 +55,7 @@ pub fn main() -> ExitCode {
         Verb::Fly(arguments) => fly::run(&arguments, &console),
         Verb::Campaign(arguments) => campaign::run(&arguments, &console),
         Verb::Build => build(&console),
-        Verb::HomingCheck(arguments) => homing_check::run(&arguments),
+        Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),
     };
     match result {
         Ok(true) => ExitCode::SUCCESS,
@@ -58,6 +69,6 @@ pub fn main() -> ExitCode {
 
 fn build(console: &Console) -> Result<bool, Failure> {
     let image = crate::image::build(&|line| console.status("Firmware", line))?;
-    println!("{}", image.display());
+    console.result(&image.display().to_string())?;
     Ok(true)
 }
