@@ -55,11 +55,13 @@ impl Firmware {
 /// An STM32F407 with a camera, in flight.
 pub struct Emulated<'f> {
     machine: Machine<Camera>,
-    channel: Option<UpChannel>,
+    channel: UpChannel,
     decoder: LogDecoder<'f>,
     log: Vec<FirmwareLog>,
     bytes: Vec<u8>,
     traced_cycles: Vec<u32>,
+    /// Frames in the log so far.
+    frames_logged: usize,
     vision: u32,
     /// How far the flight has come on the board's clock.
     clock: Nanos,
@@ -76,14 +78,17 @@ impl<'f> Emulated<'f> {
             .symbol(VISION_FUNCTION)
             .ok_or(BoardError::NoSymbol(VISION_FUNCTION))?
             .address;
+        let channel =
+            UpChannel::of(&firmware.image).ok_or(BoardError::NoSymbol(UpChannel::SYMBOL))?;
         let mut machine = Machine::new(&firmware.image, CRYSTAL_HZ, camera)?;
         machine.trace_calls(vision);
         let mut board = Self {
-            channel: UpChannel::of(&firmware.image),
+            channel,
             decoder: LogDecoder::new(&firmware.table),
             log: Vec::new(),
             bytes: Vec::new(),
             traced_cycles: Vec::new(),
+            frames_logged: 0,
             vision,
             clock: Nanos(0),
             epoch: (0, 0),
@@ -120,15 +125,28 @@ impl<'f> Emulated<'f> {
     }
 
     fn read_log(&mut self) -> Result<(), BoardError> {
-        let Some(channel) = self.channel else {
-            return Ok(());
-        };
         self.bytes.clear();
-        channel.drain(self.machine.memory_mut(), &mut self.bytes);
+        self.channel
+            .drain(self.machine.memory_mut(), &mut self.bytes);
         if self.bytes.is_empty() {
             return Ok(());
         }
-        self.decoder.decode(&self.bytes, &mut self.log)
+        let known = self.log.len();
+        self.decoder.decode(&self.bytes, &mut self.log)?;
+        let is_frame = |record: &&FirmwareLog| matches!(record, FirmwareLog::Frame(_));
+        self.frames_logged += self.log[known..].iter().filter(is_frame).count();
+        Ok(())
+    }
+
+    /// Nothing else tells of a log that overflowed: a record is written over, and a frame's cycles
+    /// would be held against those of the next. `on_their_way` records may not be there yet.
+    fn check_log(&self, on_their_way: usize) -> Result<(), BoardError> {
+        let (processed, logged) = (self.traced_cycles.len(), self.frames_logged);
+        if (logged..=logged + on_their_way).contains(&processed) {
+            Ok(())
+        } else {
+            Err(BoardError::LogLost { processed, logged })
+        }
     }
 
     fn collect_calls(&mut self) {
@@ -160,7 +178,9 @@ impl Board for Emulated<'_> {
         self.clock = self.clock + MILLISECOND;
         self.machine.run_until(self.clock)?;
         self.collect_calls();
-        self.read_log()
+        self.read_log()?;
+        // The firmware may stand between looking at a frame and logging it.
+        self.check_log(1)
     }
 
     fn receive(&mut self, into: &mut Vec<u8>) {
@@ -183,6 +203,7 @@ impl Board for Emulated<'_> {
                 self.advance()?;
             }
         }
+        self.check_log(0)?;
         let captured = self.machine.dcmi_counters().frames_captured;
         let (idle, all) = self.epoch;
         let idle = self.machine.idle_cycles() - idle;

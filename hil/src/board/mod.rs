@@ -42,7 +42,8 @@ pub trait Board {
     /// Appends what the firmware logged since the last call.
     fn drain_log(&mut self, into: &mut Vec<FirmwareLog>);
 
-    /// Ends the flight: its figures.
+    /// Ends the flight: its figures. A frame that was captured this very moment is still looked at,
+    /// and logged.
     fn finish(&mut self) -> Result<BoardFigures, BoardError>;
 }
 
@@ -61,8 +62,16 @@ pub enum BoardError {
     /// The log is not what the image's table describes.
     #[error("the firmware's log cannot be decoded")]
     Log,
-    /// The image lacks a function that the rig measures.
-    #[error("the image has no function `{0}`: is it this project's firmware?")]
+    /// Records of the firmware's log are missing: its cycle counts cannot be told apart any more.
+    #[error("the firmware looked at {processed} frames and logged {logged}: log records were lost")]
+    LogLost {
+        /// Calls of the function that looks at a frame.
+        processed: usize,
+        /// Records of frames in the log.
+        logged: usize,
+    },
+    /// The image lacks a symbol that the rig needs.
+    #[error("the image has no symbol `{0}`: is it this project's firmware?")]
     NoSymbol(&'static str),
     /// The firmware never started its camera.
     #[error(

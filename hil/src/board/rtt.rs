@@ -18,9 +18,12 @@ pub struct UpChannel {
 }
 
 impl UpChannel {
+    /// Where the control block is.
+    pub const SYMBOL: &'static str = "_SEGGER_RTT";
+
     /// The channel of an image, if it has one.
     pub fn of(image: &Image) -> Option<Self> {
-        image.symbol("_SEGGER_RTT").map(|symbol| Self {
+        image.symbol(Self::SYMBOL).map(|symbol| Self {
             control_block: symbol.address,
         })
     }
