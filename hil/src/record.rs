@@ -3,6 +3,8 @@
 //! Positions are in the route's frame: x north, y west, metres, origin at the true start. Headings
 //! are radians, counter-clockwise from north.
 
+use nav::snapshot::SNAPSHOT_BYTES;
+use nav::{OdometryVector, StoredSnapshot};
 use serde::Serialize;
 
 /// What the drone was doing; the colours of the paper's Fig. 6 follow from it.
@@ -159,7 +161,11 @@ pub struct Recording {
     pub track: Vec<TrackPoint>,
     /// In the order in which they were taken.
     pub snapshots: Vec<SnapshotMark>,
-    /// What the firmware stored between the snapshots, newest first.
+    /// Vectors that the firmware had stored when it turned to follow the route, or when the flight
+    /// ended before.
+    pub odometry_stored: u16,
+    /// Those of them that were seen to be followed, newest first. Vectors that are left behind in one
+    /// step are not told apart.
     pub odometry: Vec<OdometryMark>,
     /// Every VECTOR.
     pub vectors: Vec<VectorMark>,
@@ -169,4 +175,41 @@ pub struct Recording {
     pub frames: Vec<FrameMark>,
     /// The log.
     pub log: Vec<LogLine>,
+}
+
+impl Recording {
+    /// What the route took when the way out ended.
+    pub fn memory(&self) -> RouteMemory {
+        RouteMemory {
+            snapshots: SNAPSHOT_BYTES * self.snapshots.len(),
+            counts: COUNT_BYTES * self.snapshots.len(),
+            vectors: OdometryVector::BYTES * usize::from(self.odometry_stored),
+        }
+    }
+}
+
+/// Bytes of an odometry count (paper, Fig. 8).
+const COUNT_BYTES: usize = StoredSnapshot::BYTES - SNAPSHOT_BYTES;
+
+/// The route memory by its use, bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RouteMemory {
+    /// Coefficients.
+    pub snapshots: usize,
+    /// The place of each snapshot on the odometry stack.
+    pub counts: usize,
+    /// Odometry vectors.
+    pub vectors: usize,
+}
+
+impl RouteMemory {
+    /// As the paper counts.
+    pub fn without_counts(&self) -> usize {
+        self.snapshots + self.vectors
+    }
+
+    /// All of it.
+    pub fn with_counts(&self) -> usize {
+        self.without_counts() + self.counts
+    }
 }

@@ -17,25 +17,27 @@ pub struct Summary {
     pub world: String,
     /// Name of the route.
     pub route: String,
-    /// `both`, or `odometry` where homing was switched off.
+    /// How it found back: `both`, `odometry` or `sequence`.
     pub homing: &'static str,
-    /// Snapshot spacing, metres.
+    /// Snapshot spacing, metres; without meaning where `homing` is `odometry`.
     pub spacing_m: f64,
     /// True length of the way out, metres.
     pub outbound_m: f64,
     /// True length of the way back, metres.
     pub inbound_m: f64,
-    /// Distance from the true start at the end, metres.
+    /// Distance from the true start to where the drone stands at the end, metres.
     pub home_error_m: f64,
-    /// Inbound truth against the outbound path, root mean square, metres.
+    /// Inbound truth against the outbound path, root mean square, metres; zero where there was no
+    /// way back.
     pub cross_track_rms_m: f64,
-    /// Where the uncorrected estimate would have led: its error at the end, metres.
+    /// Error at the end of the estimate that the camera never corrected, metres: as far from home
+    /// would it have led.
     pub odometry_only_error_m: f64,
     /// Snapshots taken.
     pub snapshots: usize,
-    /// Route memory with the odometry counts, bytes.
+    /// Route memory with the odometry counts when the way out ended, bytes.
     pub memory_bytes: usize,
-    /// `memory_bytes` per metre of the way out.
+    /// `memory_bytes` per metre of the way out; zero where there was none.
     pub bytes_per_m: f64,
     /// Frames the camera sent while it was captured.
     pub frames_sent: u64,

@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use hil::flight::{Flown, fly_native};
+use hil::record::Phase;
 use hil::scenario::{Homing, Route, Scenario, Spacing};
 use tests::Budgets;
 
@@ -46,6 +47,7 @@ fn the_u_route_is_followed_home_and_odometry_alone_gets_lost() {
 #[test]
 fn the_u_route_is_56_m_long_and_stored_in_snapshots_two_metres_apart() {
     let Flown { summary, recording } = u_route();
+    assert!(recording.odometry.len() <= usize::from(recording.odometry_stored));
     // The true path is a little longer than the way points': the drone swings.
     assert!(
         (56.0..62.0).contains(&summary.outbound_m),
@@ -57,8 +59,36 @@ fn the_u_route_is_56_m_long_and_stored_in_snapshots_two_metres_apart() {
         "{}",
         summary.snapshots
     );
-    let bytes = 18 * recording.snapshots.len() + 2 * recording.odometry.len();
+    let bytes = 18 * recording.snapshots.len() + 2 * usize::from(recording.odometry_stored);
     assert_eq!(summary.memory_bytes, bytes);
+}
+
+#[test]
+fn the_way_out_ends_where_the_way_back_begins() {
+    let Flown { summary, recording } = fly(&scenario(Route::Line, Homing::Both, 1));
+    // A way out of 5 m that ended at home would be 10 m long.
+    assert!(
+        (4.5..6.0).contains(&summary.outbound_m),
+        "{}",
+        summary.outbound_m
+    );
+    let stages = recording.track.chunk_by(|a, b| a.phase == b.phase);
+    let outbound = stages.filter(|stage| stage[0].phase == Phase::Outbound);
+    assert_eq!(outbound.count(), 1);
+}
+
+#[test]
+fn a_sequence_is_stored_at_its_own_spacing_and_without_odometry() {
+    let Flown { summary, recording } = fly(&scenario(Route::Line, Homing::Sequence, 1));
+    assert!(summary.completed, "{}", summary.outcome);
+    assert_eq!(summary.spacing_m, 0.25);
+    assert_eq!(recording.odometry_stored, 0);
+    // 5 m of odometry, 0.25 m apart.
+    assert!(
+        (18..=21).contains(&summary.snapshots),
+        "{}",
+        summary.snapshots
+    );
 }
 
 #[test]

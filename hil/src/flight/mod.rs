@@ -150,6 +150,8 @@ fn fly(
         }
     };
     let figures = board.finish()?;
+    board.drain_log(&mut log);
+    recorder.log(now_ms, log.drain(..));
     let end = sum_up::End {
         outcome,
         flight_s: now_ms as f64 / 1_000.0,

@@ -147,7 +147,10 @@ impl Recorder {
         };
         if self.app_phase == app::Phase::Following {
             self.followed(map.odometry_index, tip);
-        } else if !map.snapshot_ak_bk.is_empty() {
+            return;
+        }
+        self.recording.odometry_stored = map.odometry_index;
+        if !map.snapshot_ak_bk.is_empty() {
             self.recording.snapshots.push(SnapshotMark {
                 t,
                 index: map.snapshot_index,

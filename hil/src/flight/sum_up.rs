@@ -8,13 +8,8 @@ use crate::board::BoardFigures;
 use crate::board::emulated::Firmware;
 use crate::metrics::{self, quantile};
 use crate::record::Recording;
-use crate::scenario::Scenario;
+use crate::scenario::{Homing, Scenario};
 use crate::summary::{CyclesPerFrame, FirmwareFigures, Summary};
-
-/// Bytes of a snapshot with its odometry count (paper, Fig. 8).
-const SNAPSHOT_BYTES: usize = 16 + 2;
-/// Bytes of an odometry vector.
-const VECTOR_BYTES: usize = 2;
 
 /// What is known at the end beside the recording.
 #[derive(Debug)]
@@ -37,8 +32,7 @@ pub struct End<'f> {
 pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary {
     let (outbound, inbound) = metrics::paths(recording);
     let outbound_m = metrics::length(&outbound);
-    let memory_bytes =
-        SNAPSHOT_BYTES * recording.snapshots.len() + VECTOR_BYTES * recording.odometry.len();
+    let memory_bytes = recording.memory().with_counts();
     let home = recording
         .track
         .first()
@@ -49,13 +43,13 @@ pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary 
     let wall_s = end.wall.as_secs_f64();
     Summary {
         completed: end.outcome == Outcome::Completed,
-        outcome: in_words(end.outcome).to_owned(),
+        outcome: in_words(end.outcome, scenario.homing).to_owned(),
         backend: end.backend,
         seed: scenario.seed,
         world: scenario.world.clone(),
         route: scenario.route.name().to_owned(),
         homing: scenario.homing.name(),
-        spacing_m: scenario.spacing.metres(),
+        spacing_m: scenario.snapshot_spacing_m(),
         outbound_m,
         inbound_m: metrics::length(&inbound),
         home_error_m: last.map_or(0.0, |last| last.truth.distance(&home)),
@@ -63,7 +57,11 @@ pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary 
         odometry_only_error_m: last.map_or(0.0, |last| last.truth.distance(&last.uncorrected)),
         snapshots: recording.snapshots.len(),
         memory_bytes,
-        bytes_per_m: memory_bytes as f64 / outbound_m,
+        bytes_per_m: if outbound_m > 0.0 {
+            memory_bytes as f64 / outbound_m
+        } else {
+            0.0
+        },
         frames_sent: figures.frames_sent,
         frames_captured: figures.frames_captured,
         frames_dropped: figures.frames_sent - figures.frames_processed.min(figures.frames_sent),
@@ -106,8 +104,9 @@ fn sorted(values: &[u32]) -> Vec<u32> {
     sorted
 }
 
-fn in_words(outcome: Outcome) -> &'static str {
+fn in_words(outcome: Outcome, homing: Homing) -> &'static str {
     match outcome {
+        Outcome::Completed if homing == Homing::Odometry => "followed the route to its start",
         Outcome::Completed => "followed the route to its first snapshot",
         Outcome::TimedOut => "landed: the time limit had passed",
         Outcome::NoEcho => "landed: the camera did not answer a command",

@@ -9,9 +9,6 @@ use super::{errors, histogram, number, phase};
 use crate::record::{FrameMark, Recording};
 use crate::summary::Summary;
 
-/// Mean horizon luma that the exposure aims at, of 255 (van Dijk et al. 2024, Image processing).
-const LUMA_SET_POINT: f64 = 80.0;
-
 /// From the first to the last thing recorded.
 pub fn time_axis(recording: &Recording) -> TimeAxis {
     let track = recording.track.iter().map(|point| point.t);
@@ -102,10 +99,11 @@ fn rms_level(summary: &Summary) -> Vec<Level> {
 /// Brightness and what the firmware did about it.
 pub fn exposure(recording: &Recording, time: &TimeAxis) -> Markup {
     let frames = &recording.frames;
+    let set_point = f64::from(pilot::Parameters::DEFAULT.exposure.set_point);
     let luma = Plot {
         levels: vec![Level {
-            label: "set-point 80".into(),
-            value: LUMA_SET_POINT,
+            label: format!("set-point {}", number::trimmed(set_point, 1)),
+            value: set_point,
         }],
         ..single_curve(
             "Mean luma of the horizon",

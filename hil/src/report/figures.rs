@@ -22,18 +22,15 @@ pub fn headline(summary: &Summary) -> String {
 
 /// What was flown, and with what.
 pub fn subline(summary: &Summary) -> String {
-    let how = if summary.homing == "odometry" {
-        "odometry alone"
-    } else {
-        "snapshots and odometry"
+    let apart = number::trimmed(summary.spacing_m, 2);
+    let how = match summary.homing {
+        "odometry" => "odometry alone".to_owned(),
+        "sequence" => format!("snapshots alone, {apart} m apart"),
+        _ => format!("snapshots {apart} m apart and odometry"),
     };
     format!(
-        "World {} · route {} · {how} · snapshots {} m apart · seed {} · {}",
-        summary.world,
-        summary.route,
-        number::trimmed(summary.spacing_m, 2),
-        summary.seed,
-        summary.backend,
+        "World {} · route {} · {how} · seed {} · {}",
+        summary.world, summary.route, summary.seed, summary.backend,
     )
 }
 
@@ -123,7 +120,10 @@ fn memory_figures(summary: &Summary) -> [Figure; 4] {
             label: "Snapshots",
             value: number::grouped(summary.snapshots as u64),
             unit: "",
-            why: format!("one every {} m", number::trimmed(summary.spacing_m, 2)),
+            why: match summary.homing {
+                "odometry" => "odometry alone was recorded".into(),
+                _ => format!("one every {} m", number::trimmed(summary.spacing_m, 2)),
+            },
         },
         Figure {
             label: "Frames dropped",

@@ -41,6 +41,7 @@ fn small_flight() -> Recording {
             truth: at(0.0, 0.0),
             coefficients: (0..16).map(|k| -25 + 3 * k).collect(),
         }],
+        odometry_stored: 1,
         odometry: vec![OdometryMark {
             index: 0x0103,
             counts: [10, -3],

@@ -3,6 +3,8 @@
 mod totals;
 
 use maud::{Markup, html};
+use nav::snapshot::COUNT_LUMA;
+use nav::spectrum::STORED_FREQUENCIES;
 
 use super::svg::px;
 use super::{horizon, number};
@@ -26,10 +28,11 @@ struct Scale {
 
 /// Totals, then every snapshot with the vectors that lead back to it.
 pub fn memory(recording: &Recording, outbound_m: f64) -> Markup {
-    if recording.snapshots.is_empty() && recording.odometry.is_empty() {
+    if recording.memory().with_counts() == 0 {
         return html! { p { "Nothing was stored." } };
     }
     let snapshots = &recording.snapshots;
+    let unseen = usize::from(recording.odometry_stored).saturating_sub(recording.odometry.len());
     let largest = largest_count(snapshots);
     let full = horizon::largest_deviation(snapshots.iter().map(|mark| &mark.coefficients[..]));
     let coefficients = snapshots
@@ -41,9 +44,12 @@ pub fn memory(recording: &Recording, outbound_m: f64) -> Markup {
         (totals::totals(recording, outbound_m))
         p.note {
             "Each snapshot is a row: its coefficients as bars, as bytes, and as signed numbers. The remembered horizon is drawn from them alone "
-            "(one count of frequency k is 0.60 · 0.826" sup { "k−1" } " luma; the mean is not stored). "
+            "(one count is " (number::fixed(COUNT_LUMA[0].into(), 2)) " luma at the first frequency and " (number::fixed(COUNT_LUMA[STORED_FREQUENCIES - 1].into(), 2)) " at the last; the mean is not stored). "
             "The count is the height of the odometry stack, low byte first; the vectors are those that lead back to the snapshot, in the order in which they are followed. "
             "“Off” is how far the drone was from where it believed it was."
+            @if unseen > 0 {
+                " " (unseen) " of the vectors are not listed: they were not followed, or several were left behind in one step."
+            }
         }
         div.scroll { table.memory {
             (header(coefficients))

@@ -5,40 +5,9 @@ use maud::{Markup, html};
 use crate::record::Recording;
 use crate::report::number;
 
-/// Bytes of an odometry count (uint16).
-const COUNT_BYTES: usize = 2;
-/// Bytes of an odometry vector (two int8).
-const VECTOR_BYTES: usize = 2;
-
-/// Bytes by their use.
-struct Shares {
-    snapshots: usize,
-    counts: usize,
-    vectors: usize,
-}
-
-impl Shares {
-    fn of(recording: &Recording) -> Self {
-        let snapshots = &recording.snapshots;
-        Self {
-            snapshots: snapshots.iter().map(|mark| mark.coefficients.len()).sum(),
-            counts: COUNT_BYTES * snapshots.len(),
-            vectors: VECTOR_BYTES * recording.odometry.len(),
-        }
-    }
-
-    fn without_counts(&self) -> usize {
-        self.snapshots + self.vectors
-    }
-
-    fn with_counts(&self) -> usize {
-        self.without_counts() + self.counts
-    }
-}
-
 /// The sums with and without the counts, and the share of each kind as a bar.
 pub fn totals(recording: &Recording, outbound_m: f64) -> Markup {
-    let shares = Shares::of(recording);
+    let shares = recording.memory();
     let per_metre = |bytes: usize| number::fixed(bytes as f64 / outbound_m, 1);
     let bytes = |bytes: usize| number::grouped(bytes as u64);
     let rows = [
@@ -58,7 +27,7 @@ pub fn totals(recording: &Recording, outbound_m: f64) -> Markup {
             "b-vector",
             shares.vectors,
             "odometry vectors",
-            recording.odometry.len(),
+            usize::from(recording.odometry_stored),
         ),
     ];
     html! {

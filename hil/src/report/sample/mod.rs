@@ -25,7 +25,8 @@ pub fn long_flight() -> (Recording, Summary) {
     let mut summary = summary();
     summary.snapshots = recording.snapshots.len();
     summary.vectors = recording.vectors.len();
-    summary.memory_bytes = 18 * recording.snapshots.len() + 2 * recording.odometry.len();
+    recording.odometry_stored = recording.odometry.len() as u16;
+    summary.memory_bytes = recording.memory().with_counts();
     summary.bytes_per_m = summary.memory_bytes as f64 / summary.outbound_m;
     summary.flight_s = end;
     (recording, summary)
