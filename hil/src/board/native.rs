@@ -51,14 +51,15 @@ impl Native {
             pilot,
             outbox,
             inbound,
+            outbound,
             ..
         } = self;
         for frame in parser.frames(inbound) {
             pilot.on_message(now_ms, &frame.message, outbox);
+            outbound.extend_from_slice(outbox.bytes());
+            outbox.clear();
         }
-        self.inbound.clear();
-        self.outbound.extend_from_slice(self.outbox.bytes());
-        self.outbox.clear();
+        inbound.clear();
     }
 
     /// Camera edges up to the end of this millisecond.
