@@ -38,7 +38,7 @@ impl Texture {
         let (u, v) = (u_m * self.texels_per_m, v_m * self.texels_per_m);
         let top = (self.levels.len() - 1) as f32;
         let lod = log2(footprint_m * self.texels_per_m).clamp(0.0, top);
-        let (fine, blend) = (lod as usize, lod - lod.floor());
+        let (fine, blend) = split(lod);
         let sharp = self.levels[fine].bilinear(u, v, fine);
         match self.levels.get(fine + 1) {
             Some(coarse) => sharp + blend * (coarse.bilinear(u, v, fine + 1) - sharp),
@@ -86,9 +86,15 @@ impl Level {
 
 /// The two texels around coordinate `x` and the weight of the second, clamped to the edge.
 fn neighbours(x: f32, count: usize) -> (usize, usize, f32) {
-    let x = (x - 0.5).clamp(0.0, (count - 1) as f32);
-    let first = x as usize;
-    (first, (first + 1).min(count - 1), x - x.floor())
+    let (first, rest) = split((x - 0.5).clamp(0.0, (count - 1) as f32));
+    (first, (first + 1).min(count - 1), rest)
+}
+
+/// Whole and fractional part of a number from 0 on. (`floor` is a call where the processor is not
+/// known to have an instruction for it.)
+fn split(x: f32) -> (usize, f32) {
+    let whole = x as usize;
+    (whole, x - whole as f32)
 }
 
 /// log2, exact at powers of two and linear between them (error below 0.09): picks mip levels.
