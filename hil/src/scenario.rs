@@ -58,8 +58,8 @@ pub enum Homing {
     Both,
     /// Odometry alone: what the paper compares with
     Odometry,
-    /// Homing from snapshot to snapshot, 0.25 m apart, without odometry (Fig. 6C); for short routes:
-    /// where a snapshot is missed nothing leads to the next
+    /// Homing from snapshot to snapshot, 0.25 m apart, without odometry (Fig. 6C); where one is missed
+    /// nothing leads to the next
     Sequence,
 }
 

@@ -125,6 +125,14 @@ fn snapshots_are_as_far_apart_as_the_command_says() {
 }
 
 #[test]
+fn a_visual_sequence_leads_home_without_odometry() {
+    let summary = fly(&scenario(Route::Line, Homing::Sequence, 1)).summary;
+    assert!(summary.completed, "{}", summary.outcome);
+    Budgets::load().hold("home_error_m", summary.home_error_m);
+    assert_eq!(summary.memory_bytes, 18 * summary.snapshots);
+}
+
+#[test]
 fn the_horizon_is_exposed_to_80_of_255() {
     let flown = fly(&scenario(Route::Line, Homing::Both, 1));
     // The first second is the exposure's, on the ground.

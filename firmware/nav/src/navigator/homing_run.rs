@@ -43,8 +43,8 @@ struct Filtered {
 pub(super) struct Ending {
     /// At the latest; none for as long as it takes.
     pub(super) time_limit_ms: Option<u32>,
-    /// Whether it may end as soon as the views say so.
-    pub(super) may_be_early: bool,
+    /// Nearer than this, metres, it ends as soon as the views say so; none never ends it early.
+    pub(super) radius_m: Option<f32>,
 }
 
 impl HomingRun {
@@ -140,10 +140,10 @@ impl HomingRun {
         if ending.time_limit_ms.is_some_and(is_over) {
             return Some(Arrival::TimeOut);
         }
-        if !(ending.may_be_early && self.is_trustworthy(parameters)) {
-            return None;
-        }
-        if self.offset_m() < parameters.arrival_radius_m {
+        let radius_m = ending
+            .radius_m
+            .filter(|_| self.is_trustworthy(parameters))?;
+        if self.offset_m() < radius_m {
             return Some(Arrival::Near);
         }
         let patience = parameters.frames_without_minimum;

@@ -46,33 +46,28 @@ impl Follower {
         context: &mut Context,
         step: &mut Step,
     ) -> SetPoint {
-        let recorded = recorded_position(context.route);
+        // Without odometry nobody knows where the snapshot was taken, but the heading is known.
+        let position = recorded_position(context.route).unwrap_or(context.pose.position);
         if !self.stays {
             context.route.pop_snapshot();
         }
-        match recorded.filter(|_| run.is_trustworthy(context.parameters)) {
-            Some(position) => {
-                let correction = context.realigner.realign(
-                    context.now_ms,
-                    context.pose,
-                    position,
-                    run.rotation(),
-                );
-                step.report(Event::Realigned {
-                    index: correction.index,
-                });
-                step.correction = Some(correction);
-                self.phase = Phase::Settling {
-                    since_ms: context.now_ms,
-                    correction,
-                };
-                by_odometry(position, context.pose)
-            }
-            None => {
-                self.go_on(run.target(), context, step);
-                set_point
-            }
+        if !run.is_trustworthy(context.parameters) {
+            self.go_on(run.target(), context, step);
+            return set_point;
         }
+        let correction =
+            context
+                .realigner
+                .realign(context.now_ms, context.pose, position, run.rotation());
+        step.report(Event::Realigned {
+            index: correction.index,
+        });
+        step.correction = Some(correction);
+        self.phase = Phase::Settling {
+            since_ms: context.now_ms,
+            correction,
+        };
+        by_odometry(position, context.pose)
     }
 }
 
@@ -83,18 +78,25 @@ fn ending(stays: bool, context: &Context) -> Ending {
         // It may have begun far away: it takes as long as it takes.
         Ending {
             time_limit_ms: None,
-            may_be_early: true,
+            radius_m: Some(parameters.arrival_radius_m),
         }
     } else if context.route.snapshots().len() == 1 {
         // At home precision matters and nothing follows: the drone takes all its time.
         Ending {
             time_limit_ms: Some(parameters.final_homing_time_ms),
-            may_be_early: false,
+            radius_m: None,
+        }
+    } else if context.route.top_is_visual_only() {
+        // Nothing but homing takes the drone along: leaving as early as after an odometry leg would
+        // leave it behind.
+        Ending {
+            time_limit_ms: Some(parameters.sequence_homing_time_ms),
+            radius_m: Some(parameters.sequence_arrival_radius_m),
         }
     } else {
         Ending {
             time_limit_ms: Some(parameters.homing_time_ms),
-            may_be_early: true,
+            radius_m: Some(parameters.arrival_radius_m),
         }
     }
 }
