@@ -1,7 +1,7 @@
 //! Writes what the panoramic camera sees as PNG files: the raw frame, its unrolled ring, and the
 //! ring's vertical mean (brightness as height).
 //!
-//!     cargo run --release -p fake-sensors --example look -- arena-panels 1 -2.5 0 0.5 0 150 /tmp/look
+//!     cargo run --release -p fake-sensors --example look -- arena-panels 1 -2.5 0 0.5 0 150 look
 
 use std::fs::File;
 use std::io::BufWriter;
