@@ -57,6 +57,11 @@ pub fn state(cycles: u32) {
     defmt::debug!("state cycles {=u32}", cycles);
 }
 
+/// What the navigator did: a snapshot taken, a leg begun, an arrival, a realignment.
+pub fn event(event: &pilot::Event) {
+    defmt::info!("{}", event);
+}
+
 /// Once a second: the counts since boot.
 pub fn health() {
     let c = &COUNTERS;

@@ -58,11 +58,12 @@ fn vision_frame(pilot: &mut Pilot, frame: &pilot::Frame) -> FrameReport {
 }
 
 fn answer(pilot: &mut Retained, at: Instant, message: &link::Message, outbox: &mut Outbox) {
-    let cycles = pilot.change(at, |pilot, now_ms| {
+    let (events, cycles) = pilot.change(at, |pilot, now_ms| {
         let start = clocks::cycles();
-        pilot.on_message(now_ms, message, outbox);
-        clocks::cycles().wrapping_sub(start)
+        let events = pilot.on_message(now_ms, message, outbox);
+        (events, clocks::cycles().wrapping_sub(start))
     });
+    events.iter().for_each(log::event);
     if matches!(message, link::Message::State(_)) {
         log::state(cycles);
     }

@@ -63,7 +63,10 @@ pub enum BoardError {
     #[error("the firmware's log cannot be decoded")]
     Log,
     /// Records of the firmware's log are missing: its cycle counts cannot be told apart any more.
-    #[error("the firmware looked at {processed} frames and logged {logged}: log records were lost")]
+    #[error(
+        "the firmware looked at {processed} frames and logged {logged}: log records were lost, or \
+             the image was built without debug lines (DEFMT_LOG)"
+    )]
     LogLost {
         /// Calls of the function that looks at a frame.
         processed: usize,

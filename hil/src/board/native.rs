@@ -52,10 +52,15 @@ impl Native {
             outbox,
             inbound,
             outbound,
+            log,
             ..
         } = self;
         for frame in parser.frames(inbound) {
-            pilot.on_message(now_ms, &frame.message, outbox);
+            let events = pilot.on_message(now_ms, &frame.message, outbox);
+            log.extend(events.iter().map(|event| FirmwareLog::Line {
+                level: "info",
+                text: format!("{event:?}"),
+            }));
             outbound.extend_from_slice(outbox.bytes());
             outbox.clear();
         }

@@ -88,8 +88,9 @@ pub fn fly_native(
     let pilot = Pilot::new(&parameters).map_err(BoardError::Calibration)?;
     let initial = pilot.exposure();
     let chip = Tcm8230::streaming(0, EXTCLK_HZ, initial.shutter_lines, initial.gain);
-    let mut board = Native::new(pilot, camera(scenario, chip)?);
-    fly(scenario, &mut board, None, started, progress)
+    let world = World::named(&scenario.world, scenario.seed)?;
+    let mut board = Native::new(pilot, camera(scenario, &world, chip));
+    fly(scenario, &world, &mut board, None, started, progress)
 }
 
 /// Flies a scenario with a firmware image on an emulated board.
@@ -100,19 +101,27 @@ pub fn fly_emulated(
 ) -> Result<Flown, FlightError> {
     let started = Instant::now();
     let firmware = Firmware::parse(elf)?;
-    let mut board = Emulated::boot(&firmware, camera(scenario, Tcm8230::default())?)?;
-    fly(scenario, &mut board, Some(&firmware), started, progress)
+    let world = World::named(&scenario.world, scenario.seed)?;
+    let mut board = Emulated::boot(&firmware, camera(scenario, &world, Tcm8230::default()))?;
+    fly(
+        scenario,
+        &world,
+        &mut board,
+        Some(&firmware),
+        started,
+        progress,
+    )
 }
 
 /// The camera of the drone on the ground at the start of the route.
-fn camera(scenario: &Scenario, chip: Tcm8230) -> Result<Camera, FlightError> {
-    let world = World::named(&scenario.world, scenario.seed)?;
-    let optics = PanoramicCamera::new(world, &PanoramicLens::default(), scenario.seed);
-    Ok(Camera::new(chip, optics, aircraft::pose_on_the_ground()))
+fn camera(scenario: &Scenario, world: &World, chip: Tcm8230) -> Camera {
+    let optics = PanoramicCamera::new(world.clone(), &PanoramicLens::default(), scenario.seed);
+    Camera::new(chip, optics, aircraft::pose_on_the_ground())
 }
 
 fn fly(
     scenario: &Scenario,
+    world: &World,
     board: &mut dyn Board,
     firmware: Option<&Firmware>,
     started: Instant,
@@ -121,7 +130,7 @@ fn fly(
     let route = scenario.route.waypoints();
     let expected_ms = expected_flight_ms(&route);
     let mut aircraft = Aircraft::new(scenario, &route);
-    let mut recorder = Recorder::new(&World::named(&scenario.world, scenario.seed)?, &route);
+    let mut recorder = Recorder::new(world, &route);
     let mut from_board = Vec::new();
     let mut log = Vec::new();
     let mut now_ms = 0;

@@ -67,6 +67,8 @@ pub fn build(say: &dyn Fn(&str)) -> Result<PathBuf, BuildError> {
         ])
         .arg(&target_dir)
         .envs(toolchain.environment())
+        // The rig reads the log by machine: the level is the checkout's, not the shell's.
+        .env_remove("DEFMT_LOG")
         .stdin(Stdio::null())
         .output()?;
     if output.status.success() {
