@@ -18,6 +18,7 @@ use heapless::Vec;
 use crate::checksum::checksum;
 use crate::field::Writer;
 use crate::message::{Message, layout::Layout};
+use crate::refusal::Refusal;
 
 /// Longest frame: its length is one byte.
 pub const MAX_FRAME_LEN: usize = 255;
@@ -37,6 +38,8 @@ const LENGTH_AT: usize = 1;
 const CLASS_AT: usize = 4;
 const CLASS_MASK: u8 = 0x0f;
 const COMPONENT_SHIFT: u32 = 4;
+/// Offset of the message id.
+pub(crate) const ID_AT: usize = 5;
 /// Class id of the messages between autopilot and camera.
 const INTERMCU: u8 = 5;
 
@@ -101,22 +104,6 @@ fn encode([sender, receiver]: [u8; 2], component: u8, message: &Message) -> Enco
         out.u8(byte);
     }
     bytes
-}
-
-/// Why no frame of this link begins at a start byte.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Refusal {
-    /// The length byte is below 8, the length of an empty frame.
-    BadLength,
-    /// The class is not `intermcu`.
-    WrongClass,
-    /// No message has this id.
-    UnknownMessage,
-    /// The length is not that of the message, or contradicts its array's length byte.
-    WrongSize,
-    /// The checksum does not match.
-    BadChecksum,
 }
 
 /// The frame that the bytes from a start byte on begin with, and its length; `None` while more bytes

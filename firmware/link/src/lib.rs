@@ -3,7 +3,7 @@
 //! Pure: bytes in, messages out, and back. No clock, no peripheral, no allocation; both ends of the
 //! wire use this crate, the camera firmware and the flight app that the rig puts in front of it.
 //!
-//! * [`Parser`] turns received bytes, in pieces of any size, into [`Frame`]s;
+//! * [`Parser`] turns received bytes, in pieces of any size, into [`Frame`]s, and says what it drops;
 //! * [`Message`] is what a frame says, [`Frame::encode`] what goes on the wire;
 //! * [`Mode`] gives the command bytes their names;
 //! * [`world`] is the only place where the wire's east/north/clockwise becomes x/y/counter-clockwise.
@@ -18,13 +18,15 @@ mod frame;
 mod message;
 mod mode;
 mod parser;
+mod refusal;
 pub mod world;
 
-pub use frame::{Encoded, Frame, MAX_FRAME_LEN, MIN_FRAME_LEN, Refusal};
+pub use frame::{Encoded, Frame, MAX_FRAME_LEN, MIN_FRAME_LEN};
 pub use message::{
     CAMERA_CAPACITY, COMMAND_CAPACITY, Camera, Command, DEBUG_CAPACITY, Debug, InsCorrection,
     MAP_CAPACITY, Map, Message, Source, State, Vector,
 };
 pub use mode::{Mode, Record};
-pub use parser::{Counters, Parser};
+pub use parser::{Counters, Event, Parser};
+pub use refusal::{Refusal, Refused};
 pub use world::{NotFinite, WorldPoint, WorldPose};

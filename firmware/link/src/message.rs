@@ -223,7 +223,29 @@ mod id {
     pub(super) const CAMERA: u8 = 15;
 }
 
+/// What message `id` is called; `None` if the link has no such message.
+pub(crate) const fn name(id: u8) -> Option<&'static str> {
+    Some(match id {
+        id::DEBUG => "DEBUG",
+        id::COMMAND => "COMMAND",
+        id::VECTOR => "VECTOR",
+        id::STATE => "STATE",
+        id::MAP => "MAP",
+        id::INS_CORRECTION => "INS_CORRECTION",
+        id::CAMERA => "CAMERA",
+        _ => return None,
+    })
+}
+
 impl Message {
+    /// What the message is called: its name in the published list without the prefix.
+    pub const fn name(&self) -> &'static str {
+        match name(self.id()) {
+            Some(name) => name,
+            None => "?",
+        }
+    }
+
     /// The message id in the frame's header.
     pub(crate) const fn id(&self) -> u8 {
         match self {

@@ -2,7 +2,8 @@
 
 use heapless::Vec;
 
-use crate::frame::{Frame, MAX_FRAME_LEN, Refusal, START, judge};
+use crate::frame::{Frame, ID_AT, MAX_FRAME_LEN, START, judge};
+use crate::refusal::{Refusal, Refused};
 
 /// How often each thing happened since the parser was made. Saturating.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,7 +23,7 @@ pub struct Counters {
     pub wrong_size: u32,
     /// Start bytes refused for [`Refusal::BadChecksum`].
     pub bad_checksum: u32,
-    /// Frames that the sender began and did not end ([`Parser::give_up`]).
+    /// Start bytes refused for [`Refusal::CutShort`].
     pub cut_short: u32,
 }
 
@@ -34,6 +35,7 @@ impl Counters {
             Refusal::UnknownMessage => &mut self.unknown_message,
             Refusal::WrongSize => &mut self.wrong_size,
             Refusal::BadChecksum => &mut self.bad_checksum,
+            Refusal::CutShort => &mut self.cut_short,
         };
         *counter = counter.saturating_add(1);
     }
@@ -42,6 +44,20 @@ impl Counters {
         let bytes = u32::try_from(bytes).unwrap_or(u32::MAX);
         self.bytes_skipped = self.bytes_skipped.saturating_add(bytes);
     }
+}
+
+/// What the parser found: every start byte that is not inside a frame makes one of the two.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put frames on, and nobody stores events"
+)]
+pub enum Event {
+    /// A frame that is whole and right.
+    Frame(Frame),
+    /// A start byte that none follows.
+    Refused(Refused),
 }
 
 /// The receiving end of the link.
@@ -57,6 +73,8 @@ impl Counters {
 pub struct Parser {
     /// Empty, or a start byte and what came after it while it can still become a frame.
     held: Vec<u8, MAX_FRAME_LEN>,
+    /// Whether no more bytes will come to what is held.
+    ended: bool,
     counters: Counters,
 }
 
@@ -65,6 +83,7 @@ impl Parser {
     pub const fn new() -> Self {
         Self {
             held: Vec::new(),
+            ended: false,
             counters: Counters {
                 frames_ok: 0,
                 bytes_skipped: 0,
@@ -78,13 +97,13 @@ impl Parser {
         }
     }
 
-    /// Takes received bytes until they complete a frame.
+    /// Takes received bytes until they complete a frame or prove that none begins at a start byte.
     ///
     /// `bytes` is moved past what was taken: call again until `None`, then all of it has been taken.
-    pub fn next_frame(&mut self, bytes: &mut &[u8]) -> Option<Frame> {
+    pub fn next_event(&mut self, bytes: &mut &[u8]) -> Option<Event> {
         loop {
-            if let Some(frame) = self.settle() {
-                return Some(frame);
+            if let Some(event) = self.settle() {
+                return Some(event);
             }
             let (byte, rest) = bytes.split_first()?;
             *bytes = rest;
@@ -97,21 +116,29 @@ impl Parser {
         }
     }
 
+    /// Takes received bytes until they complete a frame: [`Self::next_event`] for whom what was
+    /// dropped does not matter.
+    pub fn next_frame(&mut self, bytes: &mut &[u8]) -> Option<Frame> {
+        loop {
+            if let Event::Frame(frame) = self.next_event(bytes)? {
+                return Some(frame);
+            }
+        }
+    }
+
     /// All frames that `bytes` complete. Drop the iterator early and the bytes left are lost; where
     /// that matters, use [`Self::next_frame`].
     pub fn frames<'a>(&'a mut self, mut bytes: &'a [u8]) -> impl Iterator<Item = Frame> + 'a {
         core::iter::from_fn(move || self.next_frame(&mut bytes))
     }
 
-    /// Says that the sender has stopped in the middle of a frame, if it has begun one: for a wire
+    /// Says that the sender has stopped, and that what is held will not be completed: for a wire
     /// that has been silent for longer than a frame may pause.
     ///
-    /// The next call of [`Self::next_frame`] looks for good frames behind the unfinished one.
+    /// The next calls of [`Self::next_event`], which need no new bytes for that, refuse the frame
+    /// that was begun and deliver good ones behind its start byte, until nothing is held.
     pub fn give_up(&mut self) {
-        if !self.held.is_empty() {
-            self.counters.cut_short = self.counters.cut_short.saturating_add(1);
-            self.drop_start();
-        }
+        self.ended = !self.held.is_empty();
     }
 
     /// How many bytes of a frame that is not complete yet are held.
@@ -124,24 +151,32 @@ impl Parser {
         self.counters
     }
 
-    /// Looks for a frame in what is held, until there is one or more bytes are needed.
-    fn settle(&mut self) -> Option<Frame> {
-        while !self.held.is_empty() {
-            match judge(&self.held) {
-                Ok(None) => break,
-                Ok(Some((frame, len))) => {
-                    self.counters.frames_ok = self.counters.frames_ok.saturating_add(1);
-                    self.drop_front(len);
-                    self.seek();
-                    return Some(frame);
-                }
-                Err(refusal) => {
-                    self.counters.refuse(refusal);
-                    self.drop_start();
-                }
-            }
+    /// Decides about the held start byte; `None` if there is none or more bytes are needed.
+    fn settle(&mut self) -> Option<Event> {
+        if self.held.is_empty() {
+            self.ended = false;
+            return None;
         }
-        None
+        let why = match judge(&self.held) {
+            Ok(Some((frame, len))) => {
+                self.counters.frames_ok = self.counters.frames_ok.saturating_add(1);
+                self.drop_front(len);
+                self.seek();
+                return Some(Event::Frame(frame));
+            }
+            Ok(None) if self.ended => Refusal::CutShort,
+            Ok(None) => return None,
+            Err(refusal) => refusal,
+        };
+        let message_id = match why {
+            // Refused, in most cases, before the id is there: then in all, so that what is reported
+            // does not depend on how the stream was cut.
+            Refusal::BadLength | Refusal::WrongClass => None,
+            _ => self.held.get(ID_AT).copied(),
+        };
+        self.counters.refuse(why);
+        self.drop_start();
+        Some(Event::Refused(Refused { why, message_id }))
     }
 
     /// Skips the held start byte and what follows it up to the next one.
@@ -167,10 +202,11 @@ impl Parser {
 
 #[cfg(test)]
 mod tests {
-    use super::{Counters, Parser};
+    use super::{Counters, Event, Parser};
     use crate::Mode;
     use crate::frame::Encoded;
     use crate::message::{Command, Message, State, Vector};
+    use crate::refusal::{Refusal, Refused};
 
     fn follow() -> Encoded {
         let command = Mode::Follow.byte();
@@ -221,6 +257,28 @@ mod tests {
     }
 
     #[test]
+    fn every_refusal_says_what_was_wrong_and_with_which_message() {
+        let refused = |offset, value| {
+            let bytes = vector_with(offset, value);
+            let mut parser = Parser::new();
+            match parser.next_event(&mut &bytes[..]) {
+                Some(Event::Refused(refused)) => (refused.message_name(), refused.why.name()),
+                event => panic!("{event:?}"),
+            }
+        };
+        assert_eq!(refused(1, 7), ("?", "length"));
+        assert_eq!(refused(4, 4), ("?", "class"));
+        assert_eq!(refused(5, 16), ("?", "unknown message"));
+        assert_eq!(refused(1, 30), ("VECTOR", "size"));
+        assert_eq!(refused(20, 1), ("VECTOR", "checksum"));
+        assert_eq!(
+            refused(5, 10),
+            ("STATE", "size"),
+            "the id is the broken byte"
+        );
+    }
+
+    #[test]
     fn a_start_byte_that_claims_255_bytes_does_not_hold_up_a_command() {
         // Header of no message of this link: it is refused with its fifth byte.
         let mut parser = Parser::new();
@@ -235,6 +293,12 @@ mod tests {
         assert_eq!(parser.frames(&state[..12]).count(), 0);
         assert_eq!(parser.frames(&follow()).count(), 0, "it may be the state");
         parser.give_up();
+        let cut = Refused {
+            why: Refusal::CutShort,
+            message_id: Some(10),
+        };
+        assert_eq!(parser.next_event(&mut &[][..]), Some(Event::Refused(cut)));
+        assert_eq!(cut.message_name(), "STATE");
         assert_eq!(parser.frames(&[]).count(), 1);
         assert_eq!(parser.counters().cut_short, 1);
         assert_eq!(parser.counters().bytes_skipped, 12);
