@@ -1,5 +1,7 @@
 //! The flight app's parameters, with the values of the published app.
 
+use super::quirks::Quirks;
+
 /// Period of the app's loop, ms (`vTaskDelayUntil` with 100 ms).
 pub const CYCLE_MS: u64 = 100;
 
@@ -30,6 +32,8 @@ pub struct Settings {
     pub follow_limit_ms: u64,
     /// How long the whole flight may take before the drone lands, ms. Our own, as above.
     pub flight_limit_ms: u64,
+    /// Which of the published app's peculiarities on the link it has.
+    pub quirks: Quirks,
 }
 
 /// Standard deviations of the measurements that an INS_CORRECTION becomes.
@@ -66,6 +70,7 @@ impl Default for Settings {
             echo_limit_ms: 10_000,
             follow_limit_ms: 900_000,
             flight_limit_ms: 1_800_000,
+            quirks: Quirks::PUBLISHED,
         }
     }
 }
