@@ -14,6 +14,7 @@ pub mod homing_check;
 pub mod image;
 pub mod metrics;
 pub mod record;
+pub mod recorder;
 pub mod report;
 pub mod scenario;
 pub mod summary;

@@ -150,9 +150,45 @@ pub struct WallSegment {
     pub to: [f64; 2],
 }
 
+/// An end of the link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// The camera board: it dropped a frame of the autopilot.
+    Camera,
+    /// The autopilot: it dropped a frame of the camera board.
+    Autopilot,
+}
+
+/// A frame of the link that its receiver dropped.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LinkDrop {
+    /// Flight time, seconds.
+    pub t: f64,
+    /// Which end dropped it.
+    pub side: Side,
+    /// The message that the frame's header names; `?` where it could not be read.
+    pub message: String,
+    /// Why, for people.
+    pub why: String,
+}
+
+/// What stands for the true pose in a recording.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reference {
+    /// The true pose.
+    #[default]
+    Truth,
+    /// The drone's own estimate: nothing else is known. Errors against it are not seen.
+    Estimate,
+}
+
 /// Everything that happened.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Recording {
+    /// What every `truth` in this recording is.
+    pub reference: Reference,
     /// The world from above.
     pub plan: Vec<WallSegment>,
     /// The way points of the scripted route, metres.
@@ -173,6 +209,8 @@ pub struct Recording {
     pub corrections: Vec<CorrectionMark>,
     /// Every frame that was processed.
     pub frames: Vec<FrameMark>,
+    /// Every frame of the link that its receiver dropped.
+    pub link_drops: Vec<LinkDrop>,
     /// The log.
     pub log: Vec<LogLine>,
 }

@@ -96,6 +96,17 @@ pub struct Scenario {
     pub spacing: Spacing,
     /// How the drone finds back.
     pub homing: Homing,
+    /// What goes wrong on the way.
+    pub conditions: Conditions,
+}
+
+/// What goes wrong in a flight. Nothing, by default.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Conditions {
+    /// Share of the link's bytes, both ways, that arrive as another byte, 0..=1.
+    pub corrupted_share: f64,
+    /// When the autopilot restarts, seconds of flight.
+    pub restart_s: Option<f64>,
 }
 
 impl Scenario {

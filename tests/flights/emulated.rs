@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use hil::flight::{Flown, fly_emulated, fly_native};
 use hil::image;
-use hil::scenario::{Homing, Route, Scenario, Spacing};
+use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing};
 use tests::Budgets;
 
 /// The image; a machine that cannot build it fails every test here.
@@ -25,6 +25,7 @@ fn scenario(route: Route) -> Scenario {
         seed: 1,
         spacing,
         homing: Homing::Both,
+        conditions: Conditions::default(),
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use hil::flight::{Flown, fly_native};
 use hil::record::Phase;
-use hil::scenario::{Homing, Route, Scenario, Spacing};
+use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing};
 use tests::Budgets;
 
 fn scenario(route: Route, homing: Homing, seed: u64) -> Scenario {
@@ -15,6 +15,7 @@ fn scenario(route: Route, homing: Homing, seed: u64) -> Scenario {
         seed,
         spacing,
         homing,
+        conditions: Conditions::default(),
     }
 }
 

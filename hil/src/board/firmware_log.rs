@@ -36,16 +36,30 @@ impl<'t> LogDecoder<'t> {
                 Ok(record) => {
                     let text = record.display_message().to_string();
                     let level = record.level().map_or("print", |level| level.as_str());
-                    into.push(match frame(&text) {
-                        Some(frame) => FirmwareLog::Frame(frame),
-                        None => FirmwareLog::Line { level, text },
-                    });
+                    into.push(understood(level, text));
                 }
                 Err(DecodeError::UnexpectedEof) => return Ok(()),
                 Err(DecodeError::Malformed) => return Err(BoardError::Log),
             }
         }
     }
+}
+
+/// A record that the rig reads by machine, or else a line for people.
+fn understood(level: &'static str, text: String) -> FirmwareLog {
+    if let Some(frame) = frame(&text) {
+        FirmwareLog::Frame(frame)
+    } else if let Some((message, why)) = link_drop(&text) {
+        FirmwareLog::LinkDrop { message, why }
+    } else {
+        FirmwareLog::Line { level, text }
+    }
+}
+
+/// Reads `link dropped MESSAGE WHY`; the reason may be several words.
+fn link_drop(text: &str) -> Option<(String, String)> {
+    let (message, why) = text.strip_prefix("link dropped ")?.split_once(' ')?;
+    Some((message.to_owned(), why.to_owned()))
 }
 
 /// Reads `frame N cycles N luma X lines N gain X`.
@@ -93,5 +107,17 @@ mod tests {
             None
         );
         assert_eq!(frame("state cycles 17"), None);
+    }
+
+    #[test]
+    fn a_dropped_frame_of_the_link_is_told_with_its_message_and_reason() {
+        let dropped = FirmwareLog::LinkDrop {
+            message: "STATE".to_owned(),
+            why: "cut short".to_owned(),
+        };
+        assert_eq!(
+            understood("warn", "link dropped STATE cut short".to_owned()),
+            dropped
+        );
     }
 }

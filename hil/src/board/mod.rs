@@ -96,6 +96,13 @@ pub enum BoardError {
 pub enum FirmwareLog {
     /// A processed frame.
     Frame(FrameLog),
+    /// A frame of the link that the firmware dropped.
+    LinkDrop {
+        /// The message that its header names; `?` where it could not be read.
+        message: String,
+        /// Why.
+        why: String,
+    },
     /// Anything else, for people.
     Line {
         /// error, warn, info, debug or trace.

@@ -10,7 +10,7 @@ use super::console::Console;
 use crate::flight::{self, FlightError, Flown, Progress};
 use crate::folder;
 use crate::image;
-use crate::scenario::{Homing, Route, Scenario, Spacing};
+use crate::scenario::{Conditions, Homing, Route, Scenario, Spacing};
 use crate::summary::Summary;
 
 /// The board a flight is flown on.
@@ -59,6 +59,7 @@ impl ScenarioArguments {
             seed,
             spacing: self.spacing,
             homing: self.homing,
+            conditions: Conditions::default(),
         }
     }
 }

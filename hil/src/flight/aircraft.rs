@@ -12,23 +12,11 @@ use link::Message;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::record::PlanarPose;
+use crate::recorder::Glimpse;
 use crate::scenario::Scenario;
 
 /// How high the camera looks out above the drone's feet, metres.
 const CAMERA_HEIGHT_M: f32 = 0.04;
-
-/// Where things stand at one instant.
-#[derive(Clone, Copy, Debug)]
-pub struct Glimpse {
-    /// Where the drone is.
-    pub truth: PlanarPose,
-    /// Where its filter believes it is.
-    pub estimate: PlanarPose,
-    /// Where the same filter without the camera's corrections believes it is.
-    pub uncorrected: PlanarPose,
-    /// Height above the ground, metres.
-    pub height_m: f64,
-}
 
 /// A Crazyflie without its camera board.
 #[derive(Debug)]

@@ -3,7 +3,6 @@
 //! One loop, no threads, no wall clock: the same scenario is the same flight on every machine.
 
 mod aircraft;
-mod recorder;
 mod sum_up;
 
 use std::fmt;
@@ -19,12 +18,12 @@ use crate::board::camera::Camera;
 use crate::board::emulated::{Emulated, Firmware};
 use crate::board::native::{EXTCLK_HZ, Native};
 use crate::board::{Board, BoardError};
-use crate::record::Recording;
+use crate::record::{Recording, WallSegment};
+use crate::recorder::Recorder;
 use crate::scenario::Scenario;
 use crate::summary::Summary;
 
 use aircraft::Aircraft;
-use recorder::Recorder;
 
 /// How often progress is reported, milliseconds of flight.
 const PROGRESS_PERIOD_MS: u64 = 500;
@@ -130,14 +129,14 @@ fn fly(
     let route = scenario.route.waypoints();
     let expected_ms = expected_flight_ms(&route);
     let mut aircraft = Aircraft::new(scenario, &route);
-    let mut recorder = Recorder::new(world, &route);
+    let mut recorder = Recorder::new(blank(world, &route));
     let mut from_board = Vec::new();
     let mut log = Vec::new();
     let mut now_ms = 0;
     let outcome = loop {
         board.look_from(aircraft.camera_pose());
         let to_board = aircraft.tick(now_ms, &from_board);
-        recorder.tick(now_ms, &mut aircraft);
+        record(now_ms, &mut aircraft, &mut recorder);
         board.transmit(&to_board);
         board.advance()?;
         from_board.clear();
@@ -174,6 +173,32 @@ fn fly(
         summary: sum_up::summary(scenario, &recording, end),
         recording,
     })
+}
+
+/// What is known before a flight.
+fn blank(world: &World, route: &app::Route) -> Recording {
+    let plan = world.plan().iter().map(|line| WallSegment {
+        from: line.from_m.map(f64::from),
+        to: line.to_m.map(f64::from),
+    });
+    let places = route.waypoints.iter().map(|waypoint| waypoint.place);
+    Recording {
+        plan: plan.collect(),
+        route: places
+            .map(|place| [place.x.into(), place.y.into()])
+            .collect(),
+        ..Recording::default()
+    }
+}
+
+/// Writes down what the aircraft did in this millisecond.
+fn record(now_ms: u64, aircraft: &mut Aircraft, recorder: &mut Recorder) {
+    let glimpse = aircraft.glimpse();
+    for message in aircraft.take_received() {
+        recorder.message(now_ms, &message, &glimpse);
+    }
+    recorder.phase(now_ms, aircraft.phase());
+    recorder.track(now_ms, &glimpse);
 }
 
 /// A guess for the progress bar: the way out and back at the app's cruise speed, and half as long

@@ -1,20 +1,31 @@
 //! Writes down what happens, as it happens.
 
 use autopilot::app;
-use fake_sensors::world::World;
 use link::{InsCorrection, Map, Message, Source, Vector, WorldPoint, WorldPose};
 
-use super::aircraft::{Aircraft, Glimpse};
 use crate::board::FirmwareLog;
 use crate::record::{
-    CorrectionMark, FrameMark, LogLine, OdometryMark, Phase, PlanarPose, Recording, SnapshotMark,
-    TrackPoint, VectorMark, WallSegment,
+    CorrectionMark, FrameMark, LinkDrop, LogLine, OdometryMark, Phase, PlanarPose, Recording, Side,
+    SnapshotMark, TrackPoint, VectorMark,
 };
 
 /// A track point every 100 ms.
 const TRACK_PERIOD_MS: u64 = 100;
 /// Counts of an odometry vector per metre (paper: 0.1 m).
 const COUNTS_PER_M: f32 = 10.0;
+
+/// Where things stand at one instant.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Glimpse {
+    /// Where the drone is; see [`crate::record::Reference`].
+    pub truth: PlanarPose,
+    /// Where its filter believes it is.
+    pub estimate: PlanarPose,
+    /// Where the same filter without the camera's corrections believes it is.
+    pub uncorrected: PlanarPose,
+    /// Height above the ground, metres.
+    pub height_m: f64,
+}
 
 /// Collects a [`Recording`].
 #[derive(Debug)]
@@ -29,20 +40,8 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Before the flight.
-    pub fn new(world: &World, route: &app::Route) -> Self {
-        let plan = world.plan().iter().map(|line| WallSegment {
-            from: line.from_m.map(f64::from),
-            to: line.to_m.map(f64::from),
-        });
-        let places = route.waypoints.iter().map(|waypoint| waypoint.place);
-        let recording = Recording {
-            plan: plan.collect(),
-            route: places
-                .map(|place| [place.x.into(), place.y.into()])
-                .collect(),
-            ..Recording::default()
-        };
+    /// Before the flight; `recording` holds what is known beforehand.
+    pub fn new(recording: Recording) -> Self {
         Self {
             recording,
             app_phase: app::Phase::Ground,
@@ -52,35 +51,58 @@ impl Recorder {
         }
     }
 
-    /// A millisecond has passed.
-    pub fn tick(&mut self, now_ms: u64, aircraft: &mut Aircraft) {
+    /// The autopilot has taken a message of the camera.
+    pub fn message(&mut self, now_ms: u64, message: &Message, glimpse: &Glimpse) {
         let t = seconds(now_ms);
-        let glimpse = aircraft.glimpse();
-        for message in aircraft.take_received() {
-            match &message {
-                Message::Vector(vector) => self.vector(t, vector, &glimpse),
-                Message::Map(map) => self.map(t, map, &glimpse),
-                Message::InsCorrection(correction) => self.correction(t, correction, &glimpse),
-                Message::Command(_)
-                | Message::State(_)
-                | Message::Camera(_)
-                | Message::Debug(_) => {}
-            }
+        match message {
+            Message::Vector(vector) => self.vector(t, vector, glimpse),
+            Message::Map(map) => self.map(t, map, glimpse),
+            Message::InsCorrection(correction) => self.correction(t, correction, glimpse),
+            Message::Command(_) | Message::State(_) | Message::Camera(_) | Message::Debug(_) => {}
         }
-        if aircraft.phase() != self.app_phase {
-            self.app_phase = aircraft.phase();
-            self.line(t, "app", "info", format!("{:?}", self.app_phase));
+    }
+
+    /// What the flight app is doing now.
+    pub fn phase(&mut self, now_ms: u64, phase: app::Phase) {
+        if phase != self.app_phase {
+            self.app_phase = phase;
+            self.line(seconds(now_ms), "app", "info", format!("{phase:?}"));
         }
+    }
+
+    /// Where the drone is now. To be called every millisecond; ten times a second it is noted.
+    pub fn track(&mut self, now_ms: u64, glimpse: &Glimpse) {
         if now_ms.is_multiple_of(TRACK_PERIOD_MS) {
             self.recording.track.push(TrackPoint {
-                t,
-                phase: self.phase(),
+                t: seconds(now_ms),
+                phase: self.drawn_phase(),
                 truth: glimpse.truth,
                 estimate: glimpse.estimate,
                 uncorrected: glimpse.uncorrected,
                 height: glimpse.height_m,
             });
         }
+    }
+
+    /// A frame of the link was dropped by its receiver.
+    pub fn link_drop(&mut self, now_ms: u64, side: Side, message: String, why: String) {
+        let t = seconds(now_ms);
+        let source = match side {
+            Side::Camera => "firmware",
+            Side::Autopilot => "app",
+        };
+        self.line(t, source, "warn", format!("link dropped {message}: {why}"));
+        self.recording.link_drops.push(LinkDrop {
+            t,
+            side,
+            message,
+            why,
+        });
+    }
+
+    /// What the rig itself has to say.
+    pub fn note(&mut self, now_ms: u64, level: &str, text: String) {
+        self.line(seconds(now_ms), "rig", level, text);
     }
 
     /// What the firmware logged.
@@ -95,6 +117,9 @@ impl Recorder {
                     lines: frame.lines,
                     gain: frame.gain,
                 }),
+                FirmwareLog::LinkDrop { message, why } => {
+                    self.link_drop(now_ms, Side::Camera, message, why);
+                }
                 FirmwareLog::Line { level, text } => self.line(t, "firmware", level, text),
             }
         }
@@ -105,7 +130,7 @@ impl Recorder {
         self.recording
     }
 
-    fn phase(&self) -> Phase {
+    fn drawn_phase(&self) -> Phase {
         match self.app_phase {
             app::Phase::Recording => Phase::Outbound,
             app::Phase::Following if self.visual => Phase::Homing,
