@@ -57,6 +57,12 @@ pub fn state(cycles: u32) {
     defmt::debug!("state cycles {=u32}", cycles);
 }
 
+/// A frame from the autopilot that was not acted on: the message its header states and the reason,
+/// see `link::Refused`. Bounded by the caller; [`health`] counts all.
+pub fn link_dropped(message: &str, why: &str) {
+    defmt::warn!("link dropped {=str} {=str}", message, why);
+}
+
 /// What the navigator did: a snapshot taken, a leg begun, an arrival, a realignment.
 pub fn event(event: &pilot::Event) {
     defmt::info!("{}", event);
