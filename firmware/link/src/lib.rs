@@ -18,6 +18,7 @@ mod frame;
 mod message;
 mod mode;
 mod parser;
+mod plausible;
 mod refusal;
 pub mod world;
 
@@ -28,5 +29,6 @@ pub use message::{
 };
 pub use mode::{Mode, Record};
 pub use parser::{Counters, Event, Parser};
+pub use plausible::{Implausible, MAX_COORDINATE_M, MAX_HEADING_RAD};
 pub use refusal::{Refusal, Refused};
-pub use world::{NotFinite, WorldPoint, WorldPose};
+pub use world::{WorldPoint, WorldPose};

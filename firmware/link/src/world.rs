@@ -6,16 +6,16 @@
 //! | heading | psi, clockwise from north | yaw, counter-clockwise from x |
 //!
 //! so x = n, y = -e, yaw = -psi. All conversions are changes of sign: exact, and exact again on the
-//! way back. Whatever came from the wire can be NaN or infinite: the accessors refuse it, and the
-//! constructors refuse to send it, because the autopilot checks nothing.
+//! way back. Whatever came from the wire can be NaN, infinite or absurd: the accessors refuse it
+//! ([`Implausible`]), and the constructors of the camera's messages refuse to send it, because the
+//! autopilot checks nothing.
 
-use core::error::Error;
 use core::f32::consts::TAU;
-use core::fmt;
 
 use heapless::Vec;
 
 use crate::message::{InsCorrection, MAP_CAPACITY, Map, Source, State, Vector};
+use crate::plausible::{Implausible, coordinate, heading};
 
 /// A place in the autopilot's world, metres. Its origin is where the filter was last reset.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -39,19 +39,6 @@ pub struct WorldPose {
     pub yaw: f32,
 }
 
-/// A coordinate was NaN or infinite.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct NotFinite;
-
-impl fmt::Display for NotFinite {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a coordinate is not a finite number")
-    }
-}
-
-impl Error for NotFinite {}
-
 impl WorldPoint {
     /// A place from its coordinates north and east, m.
     pub const fn from_north_east(north: f32, east: f32) -> Self {
@@ -66,8 +53,10 @@ impl WorldPoint {
         -self.y
     }
 
-    fn finite(self) -> Result<Self, NotFinite> {
-        finite(self, [self.x, self.y])
+    fn plausible(self) -> Result<Self, Implausible> {
+        coordinate(self.x)?;
+        coordinate(self.y)?;
+        Ok(self)
     }
 }
 
@@ -93,21 +82,17 @@ impl WorldPose {
         -self.yaw
     }
 
-    fn finite(self) -> Result<Self, NotFinite> {
-        finite(self, [self.x, self.y, self.yaw])
-    }
-}
-
-fn finite<T, const N: usize>(value: T, coordinates: [f32; N]) -> Result<T, NotFinite> {
-    if coordinates.iter().all(|c| c.is_finite()) {
-        Ok(value)
-    } else {
-        Err(NotFinite)
+    fn plausible(self) -> Result<Self, Implausible> {
+        self.point().plausible()?;
+        heading(self.yaw)?;
+        Ok(self)
     }
 }
 
 impl State {
     /// The message that reports `pose`; roll and pitch are sent as zero, as the flight app does.
+    ///
+    /// It does not refuse anything, as the flight app does not either: the camera must bear it.
     pub const fn from_world(pose: WorldPose) -> Self {
         Self {
             ins_e: pose.point().east(),
@@ -121,9 +106,9 @@ impl State {
     /// Where the autopilot believes to be.
     ///
     /// # Errors
-    /// [`NotFinite`] when position or heading is no number (roll and pitch are not looked at).
-    pub fn pose(&self) -> Result<WorldPose, NotFinite> {
-        WorldPose::from_north_east(self.ins_n, self.ins_e, self.psi).finite()
+    /// [`Implausible`] position or heading (roll and pitch are not looked at).
+    pub fn pose(&self) -> Result<WorldPose, Implausible> {
+        WorldPose::from_north_east(self.ins_n, self.ins_e, self.psi).plausible()
     }
 }
 
@@ -132,15 +117,15 @@ impl Vector {
     /// to turn by `turn` (rad, counter-clockwise).
     ///
     /// # Errors
-    /// [`NotFinite`] when any coordinate is no number.
+    /// [`Implausible`] coordinates or headings.
     pub fn from_world(
         target: WorldPoint,
         turn: f32,
         start: WorldPoint,
         source: Source,
-    ) -> Result<Self, NotFinite> {
-        let (target, start) = (target.finite()?, start.finite()?);
-        finite((), [turn])?;
+    ) -> Result<Self, Implausible> {
+        let (target, start) = (target.plausible()?, start.plausible()?);
+        heading(turn)?;
         Ok(Self {
             target_e: target.east(),
             target_n: target.north(),
@@ -154,25 +139,26 @@ impl Vector {
     /// Where the drone shall fly to.
     ///
     /// # Errors
-    /// [`NotFinite`] when a coordinate is no number.
-    pub fn target(&self) -> Result<WorldPoint, NotFinite> {
-        WorldPoint::from_north_east(self.target_n, self.target_e).finite()
+    /// [`Implausible`] coordinates.
+    pub fn target(&self) -> Result<WorldPoint, Implausible> {
+        WorldPoint::from_north_east(self.target_n, self.target_e).plausible()
     }
 
     /// Where the drone was when the vector was computed.
     ///
     /// # Errors
-    /// [`NotFinite`] when a coordinate is no number.
-    pub fn start(&self) -> Result<WorldPoint, NotFinite> {
-        WorldPoint::from_north_east(self.start_n, self.start_e).finite()
+    /// [`Implausible`] coordinates.
+    pub fn start(&self) -> Result<WorldPoint, Implausible> {
+        WorldPoint::from_north_east(self.start_n, self.start_e).plausible()
     }
 
     /// How far the drone should turn, rad, counter-clockwise.
     ///
     /// # Errors
-    /// [`NotFinite`] when the angle is no number.
-    pub fn turn(&self) -> Result<f32, NotFinite> {
-        finite(-self.delta_yaw, [self.delta_yaw])
+    /// [`Implausible`] angle.
+    pub fn turn(&self) -> Result<f32, Implausible> {
+        heading(self.delta_yaw)?;
+        Ok(-self.delta_yaw)
     }
 }
 
@@ -183,14 +169,16 @@ impl InsCorrection {
     /// is sent within half a turn of the heading of `from`.
     ///
     /// # Errors
-    /// [`NotFinite`] when any coordinate is no number.
+    /// [`Implausible`] coordinates or headings.
     pub fn from_world(
         snapshot_index: u16,
         from: WorldPose,
         to: WorldPose,
-    ) -> Result<Self, NotFinite> {
-        let (from, to) = (from.finite()?, to.finite()?);
-        let turn = finite(to.psi() - from.psi(), [to.psi() - from.psi()])?;
+    ) -> Result<Self, Implausible> {
+        let (from, to) = (from.plausible()?, to.plausible()?);
+        let turn = libm::remainderf(to.psi() - from.psi(), TAU);
+        let psi_to = from.psi() + turn;
+        heading(psi_to)?;
         Ok(Self {
             snapshot_index,
             e_from: from.point().east(),
@@ -198,17 +186,18 @@ impl InsCorrection {
             psi_from: from.psi(),
             e_to: to.point().east(),
             n_to: to.point().north(),
-            psi_to: from.psi() + libm::remainderf(turn, TAU),
+            psi_to,
         })
     }
 
     /// What the drone believed, and what holds instead.
     ///
     /// # Errors
-    /// [`NotFinite`] when any coordinate is no number.
-    pub fn poses(&self) -> Result<(WorldPose, WorldPose), NotFinite> {
-        let from = WorldPose::from_north_east(self.n_from, self.e_from, self.psi_from).finite()?;
-        let to = WorldPose::from_north_east(self.n_to, self.e_to, self.psi_to).finite()?;
+    /// [`Implausible`] coordinates or headings.
+    pub fn poses(&self) -> Result<(WorldPose, WorldPose), Implausible> {
+        let from =
+            WorldPose::from_north_east(self.n_from, self.e_from, self.psi_from).plausible()?;
+        let to = WorldPose::from_north_east(self.n_to, self.e_to, self.psi_to).plausible()?;
         Ok((from, to))
     }
 }
@@ -218,13 +207,13 @@ impl Map {
     /// their numbers, where the camera believes them to be, and the snapshot's coefficients.
     ///
     /// # Errors
-    /// [`NotFinite`] when any coordinate is no number.
+    /// [`Implausible`] coordinates or headings.
     pub fn from_world(
         (snapshot_index, snapshot): (u16, WorldPoint),
         (odometry_index, odometry): (u16, WorldPoint),
         snapshot_ak_bk: Vec<i8, MAP_CAPACITY>,
-    ) -> Result<Self, NotFinite> {
-        let (snapshot, odometry) = (snapshot.finite()?, odometry.finite()?);
+    ) -> Result<Self, Implausible> {
+        let (snapshot, odometry) = (snapshot.plausible()?, odometry.plausible()?);
         Ok(Self {
             snapshot_index,
             snapshot_e: snapshot.east(),
@@ -239,17 +228,17 @@ impl Map {
     /// Where the camera believes the active snapshot to be.
     ///
     /// # Errors
-    /// [`NotFinite`] when a coordinate is no number.
-    pub fn snapshot(&self) -> Result<WorldPoint, NotFinite> {
-        WorldPoint::from_north_east(self.snapshot_n, self.snapshot_e).finite()
+    /// [`Implausible`] coordinates.
+    pub fn snapshot(&self) -> Result<WorldPoint, Implausible> {
+        WorldPoint::from_north_east(self.snapshot_n, self.snapshot_e).plausible()
     }
 
     /// Where the camera believes the active odometry vector to end.
     ///
     /// # Errors
-    /// [`NotFinite`] when a coordinate is no number.
-    pub fn odometry(&self) -> Result<WorldPoint, NotFinite> {
-        WorldPoint::from_north_east(self.odometry_n, self.odometry_e).finite()
+    /// [`Implausible`] coordinates.
+    pub fn odometry(&self) -> Result<WorldPoint, Implausible> {
+        WorldPoint::from_north_east(self.odometry_n, self.odometry_e).plausible()
     }
 }
 
@@ -259,6 +248,7 @@ mod tests {
 
     use super::{WorldPoint, WorldPose};
     use crate::message::{InsCorrection, Source, State, Vector};
+    use crate::plausible::Implausible;
 
     const ORIGIN: WorldPoint = WorldPoint { x: 0.0, y: 0.0 };
 
@@ -304,16 +294,38 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_neither_sent_nor_taken() {
-        let nowhere = WorldPoint {
-            x: f32::NAN,
-            y: 0.0,
+        assert_refused(f32::NAN, Implausible::NotFinite);
+        assert_refused(f32::NEG_INFINITY, Implausible::NotFinite);
+    }
+
+    #[test]
+    fn what_is_beyond_a_kilometre_is_neither_sent_nor_taken() {
+        assert_refused(-1000.1, Implausible::TooLarge);
+        assert_refused(f32::MAX, Implausible::TooLarge);
+        let edge = WorldPoint { x: 1000.0, y: 0.0 };
+        assert!(Vector::from_world(edge, 0.0, ORIGIN, Source::Visual).is_ok());
+    }
+
+    #[test]
+    fn a_turn_of_more_than_four_turns_is_not_sent() {
+        let sent = |turn| Vector::from_world(ORIGIN, turn, ORIGIN, Source::Visual);
+        assert!(sent(-8.0 * PI).is_ok());
+        assert_eq!(sent(-25.2), Err(Implausible::TooLarge));
+        assert_eq!(sent(f32::INFINITY), Err(Implausible::NotFinite));
+    }
+
+    /// A coordinate is refused in a target, a report and a correction, on the way in and out.
+    fn assert_refused(y: f32, why: Implausible) {
+        let place = WorldPoint { x: 0.0, y };
+        let pose = WorldPose {
+            x: 0.0,
+            y,
+            yaw: 0.0,
         };
-        assert!(Vector::from_world(nowhere, 0.0, ORIGIN, Source::Visual).is_err());
-        assert!(Vector::from_world(ORIGIN, f32::INFINITY, ORIGIN, Source::Visual).is_err());
-        let state = State {
-            ins_e: f32::NEG_INFINITY,
-            ..State::default()
-        };
-        assert!(state.pose().is_err());
+        let sent = Vector::from_world(place, 0.0, ORIGIN, Source::Visual);
+        assert_eq!(sent, Err(why));
+        assert_eq!(State::from_world(pose).pose(), Err(why));
+        let correction = InsCorrection::from_world(1, WorldPose::default(), pose);
+        assert_eq!(correction, Err(why));
     }
 }

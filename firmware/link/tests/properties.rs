@@ -4,8 +4,8 @@ mod common;
 
 use std::f32::consts::PI;
 
-use common::{LONGEST_CLAIM, frame, frames_in, frames_in_ended, message, stream};
-use link::{InsCorrection, Message, Parser, State, WorldPose};
+use common::{LONGEST_CLAIM, coordinate, frame, frames_in, frames_in_ended, message, stream};
+use link::{InsCorrection, Map, Parser, Source, State, Vector, WorldPoint, WorldPose};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -116,21 +116,58 @@ proptest! {
     }
 
     #[test]
-    fn no_coordinate_that_is_no_number_gets_past_the_accessors(message in message()) {
-        match message {
-            Message::State(state) => {
-                let wire = [state.ins_e, state.ins_n, state.psi];
-                prop_assert_eq!(state.pose().is_ok(), wire.iter().all(|c| c.is_finite()));
-            }
-            Message::Vector(vector) => {
-                let wire = [vector.target_e, vector.target_n];
-                prop_assert_eq!(vector.target().is_ok(), wire.iter().all(|c| c.is_finite()));
-            }
-            Message::InsCorrection(c) => {
-                let wire = [c.e_from, c.n_from, c.psi_from, c.e_to, c.n_to, c.psi_to];
-                prop_assert_eq!(c.poses().is_ok(), wire.iter().all(|c| c.is_finite()));
-            }
-            _ => {}
+    fn a_place_that_no_flight_reaches_gets_neither_past_the_accessors_nor_onto_the_wire(
+        // North, east, heading, each of a start and of an end.
+        wire in prop::array::uniform6(coordinate()),
+    ) {
+        let [n, e, psi, to_n, to_e, to_psi] = wire;
+        let place = |n: f32, e: f32| n.abs() <= 1000.0 && e.abs() <= 1000.0;
+        let heading = |psi: f32| psi.abs() <= 8.0 * PI;
+        let start = place(n, e) && heading(psi);
+        let both = start && place(to_n, to_e) && heading(to_psi);
+
+        let state = State { ins_e: e, ins_n: n, psi, ..State::default() };
+        prop_assert_eq!(state.pose().is_ok(), start);
+
+        let vector = Vector {
+            target_e: to_e, target_n: to_n, delta_yaw: psi, start_e: e, start_n: n, source: 0,
+        };
+        prop_assert_eq!(vector.target().is_ok(), place(to_n, to_e));
+        prop_assert_eq!(vector.start().is_ok(), place(n, e));
+        prop_assert_eq!(vector.turn().is_ok(), heading(psi));
+        let points = [WorldPoint::from_north_east(to_n, to_e), WorldPoint::from_north_east(n, e)];
+        let sent = Vector::from_world(points[0], psi, points[1], Source::Visual);
+        prop_assert_eq!(sent.is_ok(), place(to_n, to_e) && start);
+
+        let map = Map {
+            snapshot_e: e, snapshot_n: n, odometry_e: to_e, odometry_n: to_n, ..Map::default()
+        };
+        prop_assert_eq!(map.snapshot().is_ok(), place(n, e));
+        prop_assert_eq!(map.odometry().is_ok(), place(to_n, to_e));
+        let sent = Map::from_world((1, points[0]), (1, points[1]), heapless::Vec::new());
+        prop_assert_eq!(sent.is_ok(), place(n, e) && place(to_n, to_e));
+
+        let correction = InsCorrection {
+            snapshot_index: 1,
+            e_from: e, n_from: n, psi_from: psi, e_to: to_e, n_to: to_n, psi_to: to_psi,
+        };
+        prop_assert_eq!(correction.poses().is_ok(), both);
+    }
+
+    #[test]
+    fn what_the_camera_agrees_to_send_the_autopilot_believes(
+        wire in prop::array::uniform6(coordinate()),
+    ) {
+        let [n, e, psi, to_n, to_e, to_psi] = wire;
+        let from = WorldPose::from_north_east(n, e, psi);
+        let to = WorldPose::from_north_east(to_n, to_e, to_psi);
+        if let Ok(correction) = InsCorrection::from_world(1, from, to) {
+            prop_assert!(correction.poses().is_ok());
+        }
+        if let Ok(vector) = Vector::from_world(to.point(), psi, from.point(), Source::Odometry) {
+            prop_assert_eq!(vector.target(), Ok(to.point()));
+            prop_assert_eq!(vector.start(), Ok(from.point()));
+            prop_assert_eq!(vector.turn(), Ok(psi));
         }
     }
 }

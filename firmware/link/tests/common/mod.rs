@@ -1,5 +1,7 @@
 //! What the property tests share: strategies for messages, and a receiver written the plain way.
 
+use std::f32::consts::PI;
+
 use link::{
     Camera, Command, Debug, Frame, InsCorrection, MAX_FRAME_LEN, MIN_FRAME_LEN, Map, Message,
     State, Vector,
@@ -10,6 +12,16 @@ use proptest::prelude::*;
 /// Any bit pattern of an f32: NaNs with payloads, infinities and subnormals as well.
 fn any_bits() -> impl Strategy<Value = f32> {
     any::<u32>().prop_map(f32::from_bits)
+}
+
+/// A coordinate or a heading: of a flight, around the limits of what is believed, or any f32.
+pub fn coordinate() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        4 => -8.0f32..8.0,
+        4 => prop_oneof![-30f32..30.0, -1100f32..1100.0],
+        1 => prop_oneof![Just(1000.0), Just(-1000.0), Just(8.0 * PI), Just(-8.0 * PI)],
+        1 => any_bits(),
+    ]
 }
 
 fn bytes<const N: usize>() -> impl Strategy<Value = heapless::Vec<u8, N>> {

@@ -1,6 +1,6 @@
 //! The camera as the app sees it: what is sent to it, and what its messages do.
 
-use link::{Message, Mode, NotFinite, State, WorldPoint, WorldPose};
+use link::{Implausible, Message, Mode, State, WorldPoint, WorldPose};
 use nalgebra::Vector3;
 
 use super::correction::Corrections;
@@ -133,8 +133,8 @@ impl Camera {
     /// the end, so that a flight does not depend on the microseconds of the camera's answer.
     ///
     /// # Errors
-    /// [`NotFinite`] if a target or a correction is no number.
-    pub fn act(&mut self, now_ms: u64, estimate_m: Vector3<f32>) -> Result<Vec<News>, NotFinite> {
+    /// [`Implausible`] if a target or a correction cannot be believed.
+    pub fn act(&mut self, now_ms: u64, estimate_m: Vector3<f32>) -> Result<Vec<News>, Implausible> {
         let mut news = Vec::new();
         for message in std::mem::take(&mut self.heard) {
             let handled = self.handle(&message, estimate_m);
@@ -169,7 +169,7 @@ impl Camera {
         &mut self,
         message: &Message,
         estimate_m: Vector3<f32>,
-    ) -> Result<Option<News>, NotFinite> {
+    ) -> Result<Option<News>, Implausible> {
         match message {
             Message::Command(command) => self.handshake.receive(command.command),
             Message::Vector(vector) => self.goal.receive(vector.target()?),

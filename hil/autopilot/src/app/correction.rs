@@ -1,6 +1,6 @@
 //! From INS_CORRECTION to measurements for the filter.
 
-use link::{InsCorrection, NotFinite};
+use link::{Implausible, InsCorrection};
 use nalgebra::Vector3;
 
 use super::settings::CorrectionSd;
@@ -31,12 +31,12 @@ impl Corrections {
     /// estimated height, and the heading's error. `None` if this index was the last one applied.
     ///
     /// # Errors
-    /// [`NotFinite`] if the message holds what is no number.
+    /// [`Implausible`] if the message holds what cannot be believed.
     pub fn apply(
         &mut self,
         correction: &InsCorrection,
         estimate_m: Vector3<f32>,
-    ) -> Result<Option<[Measurement; 2]>, NotFinite> {
+    ) -> Result<Option<[Measurement; 2]>, Implausible> {
         if correction.snapshot_index == self.last_index {
             self.ignored += 1;
             return Ok(None);

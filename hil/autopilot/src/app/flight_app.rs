@@ -1,6 +1,6 @@
 //! The app itself: from the ground to the ground, one millisecond at a time.
 
-use link::{NotFinite, WorldPoint, WorldPose};
+use link::{WorldPoint, WorldPose};
 use nalgebra::Vector3;
 
 use super::camera::{Camera, Counters, News, Received};
@@ -227,7 +227,7 @@ impl FlightApp {
                 }
                 self.issue_set_point();
             }
-            Err(NotFinite) => self.begin_landing(now_ms, estimate, Outcome::BrokenMessage),
+            Err(_implausible) => self.begin_landing(now_ms, estimate, Outcome::BrokenMessage),
         }
     }
 
