@@ -8,7 +8,7 @@ use nav::{MapEntry, Pose, SetPoint, Step};
 
 use crate::Outbox;
 
-/// Encodes what a step asks for. What is not finite is not sent: the autopilot checks nothing.
+/// Encodes what a step asks for. What is implausible is not sent: the autopilot checks nothing.
 pub fn push(step: &Step, outbox: &mut Outbox) {
     if let Some(vector) = step.vector.as_ref().and_then(vector) {
         send(Message::Vector(vector), outbox);

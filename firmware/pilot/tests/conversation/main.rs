@@ -5,7 +5,7 @@ mod bench;
 use std::f32::consts::FRAC_PI_2;
 
 use bench::{Bench, mode, patches, uniform};
-use link::{Message, Mode, Record};
+use link::{Message, Mode, Record, State};
 use pilot::{Event, PERIOD_BYTES};
 use proptest::prelude::*;
 
@@ -181,20 +181,29 @@ fn a_dark_horizon_asks_for_light_in_proportion() {
     assert_eq!(bench.pilot.exposure(), *exposure);
 }
 
-/// Records a metre northward with a snapshot every half metre, and follows it home in a world that
-/// looks the same everywhere. The answers on the way home.
-fn flight() -> Vec<Vec<Message>> {
+/// Something that happens before each STATE.
+type Disturbance = fn(&mut Bench);
+
+/// Records a metre northward with a snapshot every half metre.
+fn record(disturb: Disturbance) -> Bench {
     let mut bench = Bench::new();
     bench.command(ROUTE, &[5]);
     for step in 0..=10 {
         bench.see(&patches());
+        disturb(&mut bench);
         bench.state(step as f32 * 0.1, 0.0, 0.0);
     }
+    bench
+}
+
+/// Follows that route home in a world that looks the same everywhere; the answers on the way.
+fn follow_home(bench: &mut Bench, disturb: Disturbance) -> Vec<Vec<Message>> {
     bench.command(FOLLOW, &[]);
     let (mut north, mut east) = (1.0, 0.0);
     let mut answers = vec![];
     for _ in 0..300 {
         bench.see(&patches());
+        disturb(bench);
         let answer = bench.state(north, east, 0.0);
         if let [Message::Vector(vector), ..] = answer.as_slice() {
             (north, east) = (vector.target_n, vector.target_e);
@@ -203,6 +212,37 @@ fn flight() -> Vec<Vec<Message>> {
     }
     assert!(north.abs() < 0.1 && east.abs() < 0.1, "not at home");
     answers
+}
+
+fn quiet(_: &mut Bench) {}
+
+fn flight() -> Vec<Vec<Message>> {
+    follow_home(&mut record(quiet), quiet)
+}
+
+/// Places and headings where no flight gets, and what is no number.
+fn absurd(bench: &mut Bench) {
+    for bad in [f32::NAN, f32::INFINITY, f32::MAX, -1000.5] {
+        for [ins_n, ins_e, psi] in [[bad, 0.0, 0.0], [0.0, bad, 0.0], [0.0, 0.0, bad]] {
+            let state = State {
+                ins_n,
+                ins_e,
+                psi,
+                ..State::default()
+            };
+            assert_eq!(bench.hear(&Message::State(state)), []);
+            assert_eq!(bench.events, [Event::InvalidPose]);
+        }
+    }
+}
+
+#[test]
+fn a_stream_of_absurd_states_leaves_route_and_answers_untouched() {
+    let route = |bench: &Bench| format!("{:?}", bench.pilot.navigator().route());
+    let (mut disturbed, mut reference) = (record(absurd), record(quiet));
+    assert_eq!(route(&disturbed), route(&reference));
+    let answers = follow_home(&mut disturbed, absurd);
+    assert_eq!(answers, follow_home(&mut reference, quiet));
 }
 
 #[test]
