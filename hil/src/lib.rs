@@ -8,13 +8,17 @@
 
 pub mod board;
 pub mod cli;
+pub mod drift;
+pub mod ekf_replay;
 pub mod flight;
 pub mod folder;
 pub mod homing_check;
 pub mod image;
 pub mod metrics;
+pub mod parallel;
 pub mod record;
 pub mod recorder;
 pub mod report;
 pub mod scenario;
+pub mod sensing;
 pub mod summary;

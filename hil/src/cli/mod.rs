@@ -5,6 +5,8 @@
 
 mod campaign;
 mod console;
+mod drift;
+mod ekf_replay;
 mod fly;
 mod homing_check;
 
@@ -43,6 +45,10 @@ enum Verb {
     Build,
     /// Holds the homing against a file of solved problems
     HomingCheck(homing_check::Arguments),
+    /// Measures how far dead reckoning strays
+    Drift(drift::Arguments),
+    /// Holds the filter against a recording of the firmware's own
+    EkfReplay(ekf_replay::Arguments),
 }
 
 /// Why a verb could not be carried out.
@@ -56,6 +62,8 @@ pub fn main() -> ExitCode {
         Verb::Campaign(arguments) => campaign::run(&arguments, &console),
         Verb::Build => build(&console),
         Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),
+        Verb::Drift(arguments) => drift::run(&arguments, &console),
+        Verb::EkfReplay(arguments) => ekf_replay::run(&arguments, &console),
     };
     match result {
         Ok(true) => ExitCode::SUCCESS,

@@ -13,17 +13,17 @@ mod horizon;
 mod log;
 mod map;
 mod memory;
-mod number;
+pub(crate) mod number;
 mod page;
 mod phase;
 mod plot;
 #[cfg(test)]
 pub(crate) mod sample;
-mod style;
-mod svg;
+pub(crate) mod style;
+pub(crate) mod svg;
 #[cfg(test)]
 mod tests;
-mod ticks;
+pub(crate) mod ticks;
 
 use crate::record::Recording;
 use crate::summary::Summary;

@@ -1,5 +1,6 @@
 //! The three files of a recording, as typed rows.
 
+use std::ffi::OsString;
 use std::path::Path;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -60,17 +61,31 @@ pub struct Reference {
 }
 
 impl Recording {
-    /// Reads `NAME.imu.csv`, `NAME.events.csv` and `NAME.ekf.csv` in `directory`.
+    /// Reads `PREFIX.imu.csv`, `PREFIX.events.csv` and `PREFIX.ekf.csv`, where `PREFIX` may hold folders.
     ///
     /// # Errors
     ///
     /// [`ReplayError::Read`] or [`ReplayError::Row`], naming the file and line.
-    pub fn load(directory: &Path, name: &str) -> Result<Self, ReplayError> {
-        let open = |part: &str| Source::read(&directory.join(format!("{name}.{part}.csv")));
+    pub fn load(prefix: &Path) -> Result<Self, ReplayError> {
+        let open = |part: &str| {
+            let mut path = OsString::from(prefix);
+            path.push(format!(".{part}.csv"));
+            Source::read(Path::new(&path))
+        };
+        Self::parse(&open("imu")?, &open("events")?, &open("ekf")?)
+    }
+
+    pub(in crate::ekf) fn parse(
+        imu: &Source,
+        events: &Source,
+        ekf: &Source,
+    ) -> Result<Self, ReplayError> {
+        let imu = imu.some_rows(imu_sample)?;
+        let clock = Clock::of(&imu);
         Ok(Self {
-            imu: open("imu")?.rows(imu_sample)?,
-            events: events(&open("events")?)?,
-            references: references(&open("ekf")?)?,
+            events: read_events(events, clock)?,
+            references: read_references(ekf, clock)?,
+            imu,
         })
     }
 }
@@ -85,11 +100,10 @@ fn imu_sample(row: &Row<'_>) -> Result<ImuSample, RowFault> {
     })
 }
 
-pub(in crate::ekf) fn events(source: &Source) -> Result<Vec<Event>, ReplayError> {
-    let mut order = Ascending::default();
+fn read_events(source: &Source, mut clock: Clock) -> Result<Vec<Event>, ReplayError> {
     source.rows(|row| {
         Ok(Event {
-            tick_ms: order.check(row.number("tick_ms")?)?,
+            tick_ms: clock.tick_ms(row)?,
             action: action(row)?,
         })
     })
@@ -97,7 +111,7 @@ pub(in crate::ekf) fn events(source: &Source) -> Result<Vec<Event>, ReplayError>
 
 fn action(row: &Row<'_>) -> Result<Action, RowFault> {
     let measurement = match row.text("kind")? {
-        "flying" => return Ok(Action::Flying(row.number::<f32>("v0")? != 0.0)),
+        "flying" => return Ok(Action::Flying(row.number("v0")? != 0.0)),
         "reset" => return Ok(Action::Reset),
         "flow" => {
             let [x, y, dt_s, sd_counts] = row.numbers(["v0", "v1", "v2", "v3"])?;
@@ -145,15 +159,14 @@ fn pose(row: &Row<'_>) -> Result<Pose, RowFault> {
     })
 }
 
-fn references(source: &Source) -> Result<Vec<Reference>, ReplayError> {
-    let mut order = Ascending::default();
-    source.rows(|row| {
+fn read_references(source: &Source, mut clock: Clock) -> Result<Vec<Reference>, ReplayError> {
+    source.some_rows(|row| {
         let [w, i, j, k] = row.numbers(["qw", "qx", "qy", "qz"])?;
         let [roll_deg, pitch_deg, yaw_deg] =
             row.numbers(["roll_deg", "pitch_legacy_deg", "yaw_deg"])?;
         let [p08, p18, p37, p25] = row.numbers(["P08", "P18", "P37", "P25"])?;
         Ok(Reference {
-            tick_ms: order.check(row.number("tick_ms")?)?,
+            tick_ms: clock.tick_ms(row)?,
             position_m: Vector3::from(row.numbers(["x", "y", "z"])?),
             velocity_m_s: Vector3::from(row.numbers(["vx", "vy", "vz"])?),
             attitude: Quaternion::new(w, i, j, k),
@@ -170,16 +183,32 @@ fn references(source: &Source) -> Result<Vec<Reference>, ReplayError> {
     })
 }
 
-/// Rows must not run backwards in time: the replay walks them once.
-#[derive(Default)]
-struct Ascending {
+/// Rows must not run backwards in time, for the replay walks them once, nor on behind the IMU's last sample.
+#[derive(Clone, Copy)]
+struct Clock {
     latest_ms: u64,
+    imu_rows: usize,
 }
 
-impl Ascending {
-    fn check(&mut self, tick_ms: u64) -> Result<u64, RowFault> {
+impl Clock {
+    fn of(imu: &[ImuSample]) -> Self {
+        Self {
+            latest_ms: 0,
+            imu_rows: imu.len(),
+        }
+    }
+
+    /// The row's tick.
+    fn tick_ms(&mut self, row: &Row<'_>) -> Result<u64, RowFault> {
+        let tick_ms = row.milliseconds("tick_ms")?;
         if tick_ms < self.latest_ms {
             return Err(RowFault::OutOfOrder(tick_ms));
+        }
+        if tick_ms >= self.imu_rows as u64 {
+            return Err(RowFault::BehindTheImu {
+                tick_ms,
+                imu_rows: self.imu_rows,
+            });
         }
         self.latest_ms = tick_ms;
         Ok(tick_ms)

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
     /// A file cannot be read.
-    #[error("cannot read {}", path.display())]
+    #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -34,13 +34,27 @@ pub enum ReplayError {
 /// What is wrong with one row.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RowFault {
+    /// The file is empty.
+    #[error("the header is missing")]
+    NoHeader,
+    /// There is a header and nothing below it.
+    #[error("there is no row below the header")]
+    NoRows,
     /// The header lacks a column.
     #[error("no column {0:?}")]
     NoColumn(&'static str),
     /// The row ends before this column.
     #[error("column {0:?} is missing")]
     Missing(&'static str),
-    /// The text is not a number of the kind the column holds.
+    /// The row goes on behind the header's last column.
+    #[error("{found} fields under {columns} columns")]
+    TooManyFields {
+        /// Fields of the row.
+        found: usize,
+        /// Columns of the header.
+        columns: usize,
+    },
+    /// The text is not a finite number of the kind the column holds.
     #[error("column {column:?} holds {text:?}, not a number of its kind")]
     NotANumber {
         /// The column.
@@ -54,6 +68,14 @@ pub enum RowFault {
     /// The row's tick is before the previous row's.
     #[error("tick {0} ms comes after a later one")]
     OutOfOrder(u64),
+    /// The row's tick is behind the last IMU sample: the filter never gets there.
+    #[error("tick {tick_ms} ms is behind the last of {imu_rows} IMU rows")]
+    BehindTheImu {
+        /// The row's tick, ms.
+        tick_ms: u64,
+        /// IMU rows, one a millisecond.
+        imu_rows: usize,
+    },
 }
 
 /// A file's text.
@@ -82,27 +104,50 @@ impl Source {
         }
     }
 
-    /// Turns every row into a value; a fault is reported with this file and the row's line.
+    /// Turns every row into a value; a fault is reported with this file and the row's line. Blank lines at the end
+    /// are no rows.
     pub(super) fn rows<T>(
         &self,
         mut convert: impl FnMut(&Row<'_>) -> Result<T, RowFault>,
     ) -> Result<Vec<T>, ReplayError> {
-        let header: Vec<&str> = self.text.lines().next().unwrap_or("").split(',').collect();
-        let lines = self.text.lines().zip(1..).skip(1);
-        lines
-            .map(|(text, line)| {
-                let row = Row {
-                    header: &header,
-                    fields: text.split(',').collect(),
-                };
-                convert(&row).map_err(|fault| ReplayError::Row {
-                    path: self.path.clone(),
-                    line,
-                    fault,
-                })
+        let mut lines = self.text.trim_end().lines();
+        let header: Vec<&str> = match lines.next() {
+            Some(header) => fields(header),
+            None => return Err(self.fault(1, RowFault::NoHeader)),
+        };
+        (2..)
+            .zip(lines)
+            .map(|(line, text)| {
+                Row::under(&header, text)
+                    .and_then(|row| convert(&row))
+                    .map_err(|fault| self.fault(line, fault))
             })
             .collect()
     }
+
+    /// As [`Source::rows`]; there must be some.
+    pub(super) fn some_rows<T>(
+        &self,
+        convert: impl FnMut(&Row<'_>) -> Result<T, RowFault>,
+    ) -> Result<Vec<T>, ReplayError> {
+        let rows = self.rows(convert)?;
+        if rows.is_empty() {
+            return Err(self.fault(1, RowFault::NoRows));
+        }
+        Ok(rows)
+    }
+
+    fn fault(&self, line: usize, fault: RowFault) -> ReplayError {
+        ReplayError::Row {
+            path: self.path.clone(),
+            line,
+            fault,
+        }
+    }
+}
+
+fn fields(line: &str) -> Vec<&str> {
+    line.split(',').map(str::trim).collect()
 }
 
 /// One line of a file.
@@ -111,9 +156,20 @@ pub(super) struct Row<'a> {
     fields: Vec<&'a str>,
 }
 
-impl Row<'_> {
+impl<'a> Row<'a> {
+    fn under(header: &'a [&'a str], line: &'a str) -> Result<Self, RowFault> {
+        let fields = fields(line);
+        if fields.len() > header.len() {
+            return Err(RowFault::TooManyFields {
+                found: fields.len(),
+                columns: header.len(),
+            });
+        }
+        Ok(Self { header, fields })
+    }
+
     /// The text in a column.
-    pub(super) fn text(&self, column: &'static str) -> Result<&str, RowFault> {
+    pub(super) fn text(&self, column: &'static str) -> Result<&'a str, RowFault> {
         let index = self
             .header
             .iter()
@@ -125,13 +181,19 @@ impl Row<'_> {
         }
     }
 
-    /// The number in a column.
-    pub(super) fn number<T: std::str::FromStr>(&self, column: &'static str) -> Result<T, RowFault> {
+    /// The whole number of milliseconds in a column.
+    pub(super) fn milliseconds(&self, column: &'static str) -> Result<u64, RowFault> {
         let text = self.text(column)?;
-        text.parse().map_err(|_| RowFault::NotANumber {
-            column,
-            text: text.to_owned(),
-        })
+        text.parse().map_err(|_| not_a_number(column, text))
+    }
+
+    /// The finite number in a column.
+    pub(super) fn number(&self, column: &'static str) -> Result<f32, RowFault> {
+        let text = self.text(column)?;
+        text.parse()
+            .ok()
+            .filter(|value: &f32| value.is_finite())
+            .ok_or_else(|| not_a_number(column, text))
     }
 
     /// The numbers in several columns.
@@ -144,5 +206,12 @@ impl Row<'_> {
             *value = self.number(column)?;
         }
         Ok(values)
+    }
+}
+
+fn not_a_number(column: &'static str, text: &str) -> RowFault {
+    RowFault::NotANumber {
+        column,
+        text: text.to_owned(),
     }
 }
