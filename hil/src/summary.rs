@@ -47,6 +47,8 @@ pub struct Summary {
     pub frames_dropped: u64,
     /// VECTOR messages received.
     pub vectors: usize,
+    /// Frames of the link.
+    pub link: LinkFigures,
     /// Processor cycles per frame, frame to spectrum; none on the native backend.
     pub cycles_per_frame: Option<CyclesPerFrame>,
     /// Share of cycles in which the processor was awake, 0..=1; none on the native backend.
@@ -59,6 +61,25 @@ pub struct Summary {
     pub realtime_factor: f64,
     /// The image; none on the native backend.
     pub firmware: Option<FirmwareFigures>,
+}
+
+/// Frames on the link, both ways.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct LinkFigures {
+    /// From the autopilot to the camera board.
+    pub to_camera: DirectionFigures,
+    /// From the camera board to the autopilot.
+    pub to_autopilot: DirectionFigures,
+}
+
+/// Frames on the link, one way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct DirectionFigures {
+    /// Frames that the sender put on the wire, whole.
+    pub frames_sent: u64,
+    /// Frames that the receiver named in its log as dropped. One broken frame can make several, one
+    /// for each start byte in it.
+    pub frames_dropped: u64,
 }
 
 /// Quantiles of the cycles of one frame by the firmware's own counter, checked against the rig's.

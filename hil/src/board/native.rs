@@ -2,7 +2,7 @@
 //! camera's timing kept so that it sees what the emulated board sees, in the same order.
 
 use fake_sensors::camera::Pose;
-use link::Parser;
+use link::{Event, Frame, Parser, Refused};
 use pilot::{Outbox, Pilot};
 
 use super::camera::Camera;
@@ -11,12 +11,17 @@ use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog, FrameL
 /// The sensor's clock on the flight board, hertz.
 pub const EXTCLK_HZ: u32 = 21_000_000;
 
+/// Silence on the wire after which the firmware gives an unfinished frame up.
+const SILENCE_MS: u64 = 20;
+
 /// The pilot on a board without a processor.
 pub struct Native {
     pilot: Pilot,
     parser: Parser,
     camera: Camera,
     elapsed_ms: u64,
+    /// When the autopilot sent last.
+    heard_ms: u64,
     /// Bytes that are on the wire to the firmware.
     inbound: Vec<u8>,
     outbound: Vec<u8>,
@@ -33,6 +38,7 @@ impl Native {
             parser: Parser::new(),
             camera,
             elapsed_ms: 0,
+            heard_ms: 0,
             inbound: Vec::new(),
             outbound: Vec::new(),
             outbox: Outbox::new(),
@@ -45,26 +51,33 @@ impl Native {
     /// 921600 baud are 0.3 ms); the camera's edges of the same millisecond come later, see
     /// [`CAMERA_LEAD_NS`].
     fn hear(&mut self) {
+        if !self.inbound.is_empty() {
+            self.heard_ms = self.elapsed_ms;
+        } else if self.elapsed_ms == self.heard_ms + SILENCE_MS {
+            self.parser.give_up();
+        }
+        let inbound = std::mem::take(&mut self.inbound);
+        let mut unread = &inbound[..];
+        while let Some(event) = self.parser.next_event(&mut unread) {
+            match event {
+                Event::Frame(frame) => self.obey(&frame),
+                Event::Refused(refused) => self.log.push(dropped(&refused)),
+            }
+        }
+    }
+
+    fn obey(&mut self, frame: &Frame) {
         let now_ms = self.elapsed_ms as u32;
-        let Self {
-            parser,
-            pilot,
-            outbox,
-            inbound,
-            outbound,
-            log,
-            ..
-        } = self;
-        for frame in parser.frames(inbound) {
-            let events = pilot.on_message(now_ms, &frame.message, outbox);
-            log.extend(events.iter().map(|event| FirmwareLog::Line {
+        let events = self
+            .pilot
+            .on_message(now_ms, &frame.message, &mut self.outbox);
+        self.log
+            .extend(events.iter().map(|event| FirmwareLog::Line {
                 level: "info",
                 text: format!("{event:?}"),
             }));
-            outbound.extend_from_slice(outbox.bytes());
-            outbox.clear();
-        }
-        inbound.clear();
+        self.outbound.extend_from_slice(self.outbox.bytes());
+        self.outbox.clear();
     }
 
     /// Camera edges up to the end of this millisecond.
@@ -99,6 +112,14 @@ impl Native {
             lines: wanted.shutter_lines,
             gain: wanted.gain,
         }));
+    }
+}
+
+/// In the firmware's words.
+fn dropped(refused: &Refused) -> FirmwareLog {
+    FirmwareLog::LinkDrop {
+        message: refused.message_name().to_owned(),
+        why: refused.why.name().to_owned(),
     }
 }
 

@@ -11,7 +11,7 @@ use crate::flight::{self, FlightError, Flown, Progress};
 use crate::folder;
 use crate::image;
 use crate::scenario::{Conditions, Homing, Route, Scenario, Spacing};
-use crate::summary::Summary;
+use crate::summary::{DirectionFigures, Summary};
 
 /// The board a flight is flown on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -206,6 +206,20 @@ fn in_words(summary: &Summary) -> String {
         format!(
             "{} captured of {} sent, {} dropped",
             summary.frames_captured, summary.frames_sent, summary.frames_dropped
+        ),
+    );
+    let one_way = |figures: DirectionFigures| {
+        format!(
+            "{} sent, {} dropped",
+            figures.frames_sent, figures.frames_dropped
+        )
+    };
+    row(
+        "link frames",
+        format!(
+            "to camera {}; to autopilot {}",
+            one_way(summary.link.to_camera),
+            one_way(summary.link.to_autopilot)
         ),
     );
     if let Some(cycles) = &summary.cycles_per_frame {

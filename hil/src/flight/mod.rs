@@ -4,6 +4,7 @@
 
 mod aircraft;
 mod sum_up;
+mod wire;
 
 use std::fmt;
 use std::time::Instant;
@@ -24,6 +25,7 @@ use crate::scenario::Scenario;
 use crate::summary::Summary;
 
 use aircraft::Aircraft;
+use wire::Wire;
 
 /// How often progress is reported, milliseconds of flight.
 const PROGRESS_PERIOD_MS: u64 = 500;
@@ -129,18 +131,21 @@ fn fly(
     let route = scenario.route.waypoints();
     let expected_ms = expected_flight_ms(&route);
     let mut aircraft = Aircraft::new(scenario, &route);
+    let mut wire = Wire::new(scenario.conditions.corrupted_share, scenario.seed);
     let mut recorder = Recorder::new(blank(world, &route));
     let mut from_board = Vec::new();
     let mut log = Vec::new();
     let mut now_ms = 0;
     let outcome = loop {
         board.look_from(aircraft.camera_pose());
-        let to_board = aircraft.tick(now_ms, &from_board);
+        let mut to_board = aircraft.tick(now_ms, &from_board);
         record(now_ms, &mut aircraft, &mut recorder);
+        wire.to_camera(&mut to_board);
         board.transmit(&to_board);
         board.advance()?;
         from_board.clear();
         board.receive(&mut from_board);
+        wire.to_autopilot(&mut from_board);
         board.drain_log(&mut log);
         recorder.log(now_ms, log.drain(..));
         if now_ms.is_multiple_of(PROGRESS_PERIOD_MS) {
@@ -160,15 +165,16 @@ fn fly(
     let figures = board.finish()?;
     board.drain_log(&mut log);
     recorder.log(now_ms, log.drain(..));
+    let recording = recorder.finish();
     let end = sum_up::End {
         outcome,
         flight_s: now_ms as f64 / 1_000.0,
         figures,
         backend: board.name(),
         firmware,
+        link: wire.figures(&recording),
         wall: started.elapsed(),
     };
-    let recording = recorder.finish();
     Ok(Flown {
         summary: sum_up::summary(scenario, &recording, end),
         recording,

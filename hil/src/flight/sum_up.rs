@@ -9,7 +9,7 @@ use crate::board::emulated::Firmware;
 use crate::metrics::{self, quantile};
 use crate::record::Recording;
 use crate::scenario::{Homing, Scenario};
-use crate::summary::{CyclesPerFrame, FirmwareFigures, Summary};
+use crate::summary::{CyclesPerFrame, FirmwareFigures, LinkFigures, Summary};
 
 /// What is known at the end beside the recording.
 #[derive(Debug)]
@@ -24,6 +24,8 @@ pub struct End<'f> {
     pub backend: &'static str,
     /// The image, where there was one.
     pub firmware: Option<&'f Firmware>,
+    /// Frames of the link.
+    pub link: LinkFigures,
     /// Wall time.
     pub wall: Duration,
 }
@@ -66,6 +68,7 @@ pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary 
         frames_captured: figures.frames_captured,
         frames_dropped: figures.frames_sent - figures.frames_processed.min(figures.frames_sent),
         vectors: recording.vectors.len(),
+        link: end.link,
         cycles_per_frame: cycles_per_frame(recording, figures),
         cpu_load: figures.cpu_load,
         flight_s: end.flight_s,

@@ -3,7 +3,7 @@
 mod flight;
 
 use crate::record::{FrameMark, LogLine, Recording, WallSegment};
-use crate::summary::{CyclesPerFrame, FirmwareFigures, Summary};
+use crate::summary::{CyclesPerFrame, FirmwareFigures, LinkFigures, Summary};
 
 const FRAME_HZ: f64 = 30.0;
 
@@ -68,6 +68,7 @@ fn summary() -> Summary {
         frames_captured: 9010,
         frames_dropped: 2,
         vectors: 0,
+        link: LinkFigures::default(),
         cycles_per_frame: Some(CyclesPerFrame {
             p50: 151_200,
             p99: 204_000,
