@@ -5,9 +5,10 @@ use autopilot::controller::{ControllerParameters, SetPoint};
 use autopilot::ekf::Parameters;
 use autopilot::vehicle::{Truth, Vehicle};
 use fake_sensors::motion::{MotionSensors, SensorModel};
+use hil::sensing;
 use nalgebra::Vector3;
 
-use crate::{hold, imu, measurements, ramp, sensed, standing};
+use crate::{hold, ramp, standing};
 
 /// A drone that flies on its own estimates.
 struct ClosedLoop {
@@ -35,11 +36,14 @@ impl ClosedLoop {
         mut watch: impl FnMut(&Truth),
     ) {
         while (self.now_ms as f64) < until_s * 1000.0 {
-            let readings = self.sensors.tick(&sensed(self.vehicle.truth()));
+            let readings = self
+                .sensors
+                .tick(&sensing::motion_truth(self.vehicle.truth()));
+            let measurements: Vec<_> = sensing::deck_measurements(&readings).collect();
             let motors = self.stabiliser.tick(
                 self.now_ms,
-                &imu(&readings),
-                &measurements(&readings),
+                &sensing::imu_sample(&readings),
+                &measurements,
                 &set_point(self.now_ms as f64 / 1000.0),
             );
             self.vehicle.step(&motors);

@@ -2,9 +2,8 @@
 
 use autopilot::ekf::{Measurement, Position, YawError};
 use fake_sensors::motion::SensorModel;
+use hil::drift::OpenLoop;
 use nalgebra::Vector3;
-
-use crate::listening::Listening;
 
 /// What one homing correction did to the estimate: the shares of position and yaw that were taken, and the sudden
 /// change of the velocity in the world, m/s.
@@ -15,7 +14,7 @@ struct Taken {
 }
 
 /// Sends a correction by (+0.20, -0.10) m and 0.10 rad and lets the filter take it.
-fn correct(flight: &mut Listening, sd_m: f32, sd_rad: f32) -> Taken {
+fn correct(flight: &mut OpenLoop, sd_m: f32, sd_rad: f32) -> Taken {
     let shift = Vector3::new(0.2, -0.1, 0.0);
     let before = flight.ekf.estimate();
     let fix = Position {
@@ -42,7 +41,7 @@ fn correct(flight: &mut Listening, sd_m: f32, sd_rad: f32) -> Taken {
 /// The first correction 4 s into the leg, the second `gap_ms` later.
 fn correct_twice(sd_m: f32, sd_rad: f32, gap_ms: u64) -> [Taken; 2] {
     const FIRST_MS: u64 = 10_005;
-    let mut flight = Listening::new(&SensorModel::default(), 1);
+    let mut flight = OpenLoop::new(&SensorModel::default(), 1);
     flight.run_until(FIRST_MS);
     let first = correct(&mut flight, sd_m, sd_rad);
     flight.run_until(FIRST_MS + gap_ms);

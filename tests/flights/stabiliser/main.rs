@@ -3,47 +3,10 @@
 mod closed_loop;
 mod corrections;
 mod drift;
-mod listening;
 
 use autopilot::controller::SetPoint;
-use autopilot::ekf::{Flow, ImuSample, Measurement, Range};
-use autopilot::vehicle::{Truth, Vehicle, VehicleParameters};
-use fake_sensors::motion::{MotionReadings, MotionTruth};
+use autopilot::vehicle::{Vehicle, VehicleParameters};
 use nalgebra::Vector3;
-
-fn sensed(truth: &Truth) -> MotionTruth {
-    MotionTruth {
-        position_m: truth.position_m,
-        velocity_m_s: truth.velocity_m_s,
-        attitude: truth.attitude,
-        angular_rate_rad_s: truth.angular_rate_rad_s,
-        specific_force_m_s2: truth.specific_force_m_s2,
-    }
-}
-
-fn imu(readings: &MotionReadings) -> ImuSample {
-    ImuSample {
-        gyro_deg_s: readings.imu.gyro_deg_s,
-        acc_g: readings.imu.acc_g,
-    }
-}
-
-fn measurements(readings: &MotionReadings) -> Vec<Measurement> {
-    let flow = readings.flow.map(|flow| {
-        Measurement::Flow(Flow {
-            counts: flow.counts.map(f32::from),
-            dt_s: flow.dt_s,
-            sd_counts: flow.sd_counts,
-        })
-    });
-    let range = readings.range.map(|range| {
-        Measurement::Range(Range {
-            distance_m: range.distance_m,
-            sd_m: range.sd_m,
-        })
-    });
-    flow.into_iter().chain(range).collect()
-}
 
 fn standing() -> Vehicle {
     Vehicle::standing_at(VehicleParameters::default(), Vector3::zeros(), 0.0)
