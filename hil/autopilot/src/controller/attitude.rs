@@ -51,7 +51,8 @@ impl AttitudeController {
         let [roll, pitch, yaw] = [0, 1, 2].map(|axis| {
             let rate = self.attitude[axis].update(wanted[axis], here[axis]);
             let torque = self.rate[axis].update(rate, turning[axis]);
-            torque.clamp(f32::from(i16::MIN), f32::from(i16::MAX))
+            // Symmetric: the firmware negates them as 16-bit integers.
+            torque.clamp(-f32::from(i16::MAX), f32::from(i16::MAX))
         });
         Torque { roll, pitch, yaw }
     }

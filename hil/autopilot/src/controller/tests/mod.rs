@@ -1,10 +1,13 @@
-//! Claims about the cascade: signs, limits, rates.
+//! Claims about the cascade: signs, limits, rates. Expected values are worked out from the gains.
+
+mod attitude;
+mod mixer;
+mod modes;
+mod position;
 
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 
-use super::attitude::Torque;
-use super::mixer::mix;
-use super::{Controller, ControllerParameters, IDLE_THRUST, MotorCommands, SetPoint};
+use super::{Controller, ControllerParameters, MotorCommands, SetPoint};
 use crate::ekf::Estimate;
 
 const STILL: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
@@ -98,48 +101,26 @@ fn a_climb_of_half_a_metre_asks_for_a_metre_per_second() {
 }
 
 #[test]
-fn a_full_motor_makes_all_give_way_and_none_falls_below_idle() {
-    let torque = Torque {
-        roll: 30_000.0,
-        pitch: 0.0,
-        yaw: 0.0,
-    };
-    assert_eq!(
-        mix(60_000.0, &torque),
-        MotorCommands([35_535, 35_535, 65_535, 65_535])
-    );
-    assert_eq!(
-        mix(20_000.0, &torque),
-        MotorCommands([IDLE_THRUST, IDLE_THRUST, 35_000, 35_000])
-    );
-}
-
-#[test]
-fn motors_off_stops_them_and_forgets_the_integrals() {
+fn attitude_and_rate_loops_run_every_other_millisecond() {
     let mut controller = Controller::new(&ControllerParameters::default());
-    let below = hold(0.0, 0.0, 1.0, 0.0);
-    for now_ms in 0..1000 {
-        controller.tick(now_ms, &level(), &STILL, &below);
-    }
-    let wound_up = controller.tick(1000, &level(), &STILL, &below);
-    assert_eq!(
-        controller.tick(1001, &level(), &STILL, &SetPoint::MotorsOff),
-        MotorCommands::STOPPED
-    );
-    let fresh = controller.tick(1010, &level(), &STILL, &below);
-    assert!(fresh.largest() < wound_up.largest());
-}
-
-#[test]
-fn loops_run_at_their_own_rates() {
-    let mut controller = Controller::new(&ControllerParameters::default());
-    let mut changes = 0;
     let mut last = MotorCommands::STOPPED;
     for now_ms in 0..100 {
         let gyro = Vector3::new(now_ms as f32, 0.0, 0.0);
         let motors = controller.tick(now_ms, &level(), &gyro, &hold(0.0, 0.0, 0.5, 0.0));
-        changes += u32::from(motors != last);
+        assert_eq!(motors != last, now_ms % 2 == 0, "at {now_ms} ms");
         last = motors;
     }
-    assert_eq!(changes, 50);
+}
+
+#[test]
+fn position_and_velocity_loops_run_every_tenth_millisecond() {
+    let mut controller = Controller::new(&ControllerParameters::default());
+    let mean = |motors: MotorCommands| motors.0.map(u32::from).iter().sum::<u32>();
+    let mut last = 0;
+    for now_ms in 0..100 {
+        let rising = hold(0.0, 0.0, 0.5 + 0.001 * now_ms as f32, 0.0);
+        let motors = controller.tick(now_ms, &level(), &STILL, &rising);
+        assert_eq!(mean(motors) != last, now_ms % 10 == 0, "at {now_ms} ms");
+        last = mean(motors);
+    }
 }
