@@ -14,13 +14,18 @@ const IDENTIFIED_MASS_KG: f64 = 0.043_38;
 /// Moments of inertia of a Crazyflie 2.1 Brushless, kg m² (University of Toronto Learning Systems and Robotics Lab,
 /// `drone-models`, `cf21B_500`).
 const IDENTIFIED_INERTIA_KG_M2: Vector3<f64> = Vector3::new(25e-6, 28e-6, 49e-6);
-/// Reaction torque per thrust, m (same source).
+/// Reaction torque per thrust, m (same source; the firmware's platform file has 0.005 69).
 const TORQUE_PER_THRUST_M: f64 = 0.005_94;
 /// Distance of the motors from the body's axes, m: arms of 50 mm at 45°.
 const MOTOR_OFFSET_M: f64 = 0.035_355;
-/// Time constant of the thrust, s: assumed, between the 15 ms and 40 ms simulators of small drones use.
+/// Time constant of the thrust, s. Assumed: what is published for the Brushless is no motor alone and scatters, 50 ms
+/// (RotorPy's `crazyfliebrushless_params`, after Gräfe et al. 2026) and 80 ms (`drone-models`, from whole flights);
+/// brushed Crazyflies are simulated with 5 to 30 ms.
 const MOTOR_TIME_CONSTANT_S: f64 = 0.025;
-/// Linear drag over mass, 1/s: the order of Förster's rotor drag (ETH Zürich 2015).
+/// Linear drag over mass, 1/s: the order of Förster's rotor drag (ETH Zürich 2015: 9.2e-7 kg times the rotors' speeds,
+/// 0.23 1/s for a brushed Crazyflie in hover). A Brushless may feel more: 0.50 1/s and a quadratic part
+/// (`drone-models`), and 0.67 1/s at 56 g with propeller guards (RotorPy's `crazyfliebrushless_params`, after Folk
+/// 2026). Drag of the body, quadratic in the wind, is left out.
 const DRAG_PER_S: f64 = 0.22;
 /// The controller's command in hover, as a share of the full command (`DEFAULT_BASE_THRUST` 30000 of 65535).
 const HOVER_SHARE: f64 = 30_000.0 / 65_535.0;

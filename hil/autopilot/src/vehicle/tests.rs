@@ -131,3 +131,59 @@ fn specific_force_integrates_to_the_velocity() {
     }
     assert!((velocity - vehicle.truth().velocity_m_s).norm() < 1e-9);
 }
+
+#[test]
+fn unequal_thrusts_turn_the_body_as_fast_as_its_inertia_allows() {
+    // The motors' lag is over after a second. Arms of 50 mm at 45 degrees; two motors on each side.
+    let parameters = VehicleParameters::default();
+    let per_count = parameters.full_thrust_n / 65_535.0;
+    let arm = 0.05 * core::f64::consts::FRAC_1_SQRT_2;
+    let spread = 4.0 * 100.0 * per_count;
+    for (commands, expected) in [
+        (
+            [29_900, 29_900, 30_100, 30_100],
+            Vector3::x() * (spread * arm / parameters.inertia_kg_m2.x),
+        ),
+        (
+            [30_100, 29_900, 29_900, 30_100],
+            Vector3::y() * (-spread * arm / parameters.inertia_kg_m2.y),
+        ),
+        (
+            [29_900, 30_100, 29_900, 30_100],
+            Vector3::z() * (spread * 0.005_94 / parameters.inertia_kg_m2.z),
+        ),
+    ] {
+        let commands = MotorCommands(commands);
+        let mut vehicle = hovering();
+        for _ in 0..1000 {
+            vehicle.motors.step(&commands);
+        }
+        run(&mut vehicle, commands, 100);
+        let found = vehicle.truth().angular_rate_rad_s / 0.1;
+        assert!(
+            (found - expected).norm() < 1e-4 * expected.norm(),
+            "{found} against {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_free_tumble_keeps_its_angular_momentum() {
+    let mut vehicle = hovering();
+    vehicle.truth.position_m.z = 100.0;
+    vehicle.truth.angular_rate_rad_s = Vector3::new(3.0, -2.0, 4.0);
+    let momentum = |vehicle: &Vehicle| {
+        let truth = vehicle.truth();
+        let inertia = vehicle.parameters.inertia_kg_m2;
+        truth
+            .attitude
+            .transform_vector(&inertia.component_mul(&truth.angular_rate_rad_s))
+    };
+    let before = momentum(&vehicle);
+    run(&mut vehicle, HOVER, 1000);
+    let lost = (momentum(&vehicle) - before).norm() / before.norm();
+    assert!(lost < 0.005, "lost {lost}");
+    // Without the gyroscopic torque the body rate itself would stay.
+    let turned = vehicle.truth().angular_rate_rad_s - Vector3::new(3.0, -2.0, 4.0);
+    assert!(turned.norm() > 0.5, "{turned}");
+}
