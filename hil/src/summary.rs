@@ -49,6 +49,8 @@ pub struct Summary {
     pub vectors: usize,
     /// Frames of the link.
     pub link: LinkFigures,
+    /// How the clock on the wall and the peers were kept up with; none in virtual time.
+    pub live: Option<LiveFigures>,
     /// Processor cycles per frame, frame to spectrum; none on the native backend.
     pub cycles_per_frame: Option<CyclesPerFrame>,
     /// Share of cycles in which the processor was awake, 0..=1; none on the native backend.
@@ -80,6 +82,36 @@ pub struct DirectionFigures {
     /// Frames that the receiver named in its log as dropped. One broken frame can make several, one
     /// for each start byte in it.
     pub frames_dropped: u64,
+}
+
+/// A flight against the clock on the wall.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LiveFigures {
+    /// How well it kept step.
+    pub pace: PaceFigures,
+    /// Where the other end of the link was met.
+    pub link: String,
+    /// How often a peer came there.
+    pub link_peers: u32,
+    /// Where the camera's pose came from, or went to.
+    pub pose: String,
+    /// How often a peer came there.
+    pub pose_peers: u32,
+    /// Poses received.
+    pub poses: u64,
+    /// Lines received that were none.
+    pub bad_poses: u64,
+}
+
+/// How well steps of a millisecond kept up with the clock.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PaceFigures {
+    /// Virtual over real time; 1 unless asked for otherwise.
+    pub speed: f64,
+    /// How late the latest step began, real milliseconds.
+    pub largest_lateness_ms: f64,
+    /// Share of the steps that began more than 5 ms late, 0..=1.
+    pub late_share: f64,
 }
 
 /// Quantiles of the cycles of one frame by the firmware's own counter, checked against the rig's.

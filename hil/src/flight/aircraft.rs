@@ -100,12 +100,7 @@ impl Aircraft {
     /// Where the camera is.
     pub fn camera_pose(&self) -> camera::Pose {
         let truth = self.vehicle.truth();
-        let attitude = truth.attitude.cast::<f32>();
-        let above_feet = Vector3::new(0.0, 0.0, CAMERA_HEIGHT_M);
-        camera::Pose {
-            position_m: truth.position_m.cast() + attitude * above_feet,
-            attitude,
-        }
+        camera_pose(&truth.position_m, &truth.attitude)
     }
 
     /// What the app is doing.
@@ -134,6 +129,16 @@ impl Aircraft {
             uncorrected: planar(&self.uncorrected.estimate()),
             height_m: truth.position_m.z,
         }
+    }
+}
+
+/// The camera of a drone whose feet are at `position_m`.
+pub fn camera_pose(position_m: &Vector3<f64>, attitude: &UnitQuaternion<f64>) -> camera::Pose {
+    let attitude = attitude.cast::<f32>();
+    let above_feet = Vector3::new(0.0, 0.0, CAMERA_HEIGHT_M);
+    camera::Pose {
+        position_m: position_m.cast() + attitude * above_feet,
+        attitude,
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! One loop, no threads, no wall clock: the same scenario is the same flight on every machine.
 
-mod aircraft;
-mod sum_up;
+pub(crate) mod aircraft;
+pub(crate) mod sum_up;
 mod wire;
 
 use std::fmt;
@@ -115,7 +115,7 @@ pub fn fly_emulated(
 }
 
 /// The camera of the drone on the ground at the start of the route.
-fn camera(scenario: &Scenario, world: &World, chip: Tcm8230) -> Camera {
+pub(crate) fn camera(scenario: &Scenario, world: &World, chip: Tcm8230) -> Camera {
     let optics = PanoramicCamera::new(world.clone(), &PanoramicLens::default(), scenario.seed);
     Camera::new(chip, optics, aircraft::pose_on_the_ground())
 }
@@ -167,7 +167,8 @@ fn fly(
     recorder.log(now_ms, log.drain(..));
     let recording = recorder.finish();
     let end = sum_up::End {
-        outcome,
+        completed: outcome == app::Outcome::Completed,
+        outcome: sum_up::in_words(outcome, scenario.homing),
         flight_s: now_ms as f64 / 1_000.0,
         figures,
         backend: board.name(),
@@ -182,7 +183,7 @@ fn fly(
 }
 
 /// What is known before a flight.
-fn blank(world: &World, route: &app::Route) -> Recording {
+pub(crate) fn blank(world: &World, route: &app::Route) -> Recording {
     let plan = world.plan().iter().map(|line| WallSegment {
         from: line.from_m.map(f64::from),
         to: line.to_m.map(f64::from),
@@ -198,7 +199,7 @@ fn blank(world: &World, route: &app::Route) -> Recording {
 }
 
 /// Writes down what the aircraft did in this millisecond.
-fn record(now_ms: u64, aircraft: &mut Aircraft, recorder: &mut Recorder) {
+pub(crate) fn record(now_ms: u64, aircraft: &mut Aircraft, recorder: &mut Recorder) {
     let glimpse = aircraft.glimpse();
     for message in aircraft.take_received() {
         recorder.message(now_ms, &message, &glimpse);

@@ -14,8 +14,10 @@ use crate::summary::{CyclesPerFrame, FirmwareFigures, LinkFigures, Summary};
 /// What is known at the end beside the recording.
 #[derive(Debug)]
 pub struct End<'f> {
-    /// How the flight ended.
-    pub outcome: Outcome,
+    /// Whether the drone followed the route to its first snapshot and landed.
+    pub completed: bool,
+    /// How the flight ended, for people.
+    pub outcome: &'static str,
     /// Flight time, seconds.
     pub flight_s: f64,
     /// The board's figures.
@@ -44,8 +46,8 @@ pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary 
     let figures = &end.figures;
     let wall_s = end.wall.as_secs_f64();
     Summary {
-        completed: end.outcome == Outcome::Completed,
-        outcome: in_words(end.outcome, scenario.homing).to_owned(),
+        completed: end.completed,
+        outcome: end.outcome.to_owned(),
         backend: end.backend,
         seed: scenario.seed,
         world: scenario.world.clone(),
@@ -69,6 +71,7 @@ pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary 
         frames_dropped: figures.frames_sent - figures.frames_processed.min(figures.frames_sent),
         vectors: recording.vectors.len(),
         link: end.link,
+        live: None,
         cycles_per_frame: cycles_per_frame(recording, figures),
         cpu_load: figures.cpu_load,
         flight_s: end.flight_s,
@@ -107,7 +110,8 @@ fn sorted(values: &[u32]) -> Vec<u32> {
     sorted
 }
 
-fn in_words(outcome: Outcome, homing: Homing) -> &'static str {
+/// How a flight of the flight app ended, for people.
+pub fn in_words(outcome: Outcome, homing: Homing) -> &'static str {
     match outcome {
         Outcome::Completed if homing == Homing::Odometry => "followed the route to its start",
         Outcome::Completed => "followed the route to its first snapshot",
@@ -117,6 +121,8 @@ fn in_words(outcome: Outcome, homing: Homing) -> &'static str {
         Outcome::TooHigh => "landed: too high",
         Outcome::PositionLost => "landed: the filter lost its position",
         Outcome::BrokenMessage => "landed: the camera sent a target that is no number",
+        Outcome::RadioLost => "landed: the radio link was lost",
+        Outcome::BatteryLow => "landed: the battery was low",
         Outcome::LandCommanded => "landed: on command",
         Outcome::Killed => "stopped: the motors were switched off",
     }

@@ -69,6 +69,7 @@ fn summary() -> Summary {
         frames_dropped: 2,
         vectors: 0,
         link: LinkFigures::default(),
+        live: None,
         cycles_per_frame: Some(CyclesPerFrame {
             p50: 151_200,
             p99: 204_000,
