@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::scenario::Conditions;
+
 /// `summary.json` of a flight.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
@@ -21,6 +23,8 @@ pub struct Summary {
     pub homing: &'static str,
     /// Snapshot spacing, metres; without meaning where `homing` is `odometry`.
     pub spacing_m: f64,
+    /// What the flight was up against.
+    pub conditions: Conditions,
     /// True length of the way out, metres.
     pub outbound_m: f64,
     /// True length of the way back, metres.

@@ -23,7 +23,8 @@ const HOME_RADIUS_M: f64 = 0.5;
 #[command(after_help = "Examples:\n  \
     hil campaign                          20 seeds of the U\n  \
     hil campaign --compare                the same seeds with odometry alone as well\n  \
-    hil campaign --route s --seeds 100 --json")]
+    hil campaign --route s --seeds 100 --json\n  \
+    hil campaign --seeds 10 --corrupt 1%")]
 pub struct Arguments {
     #[command(flatten)]
     scenario: ScenarioArguments,

@@ -6,11 +6,12 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 
 use super::Failure;
+use super::conditions::ConditionArguments;
 use super::console::Console;
 use crate::flight::{self, FlightError, Flown, Progress};
 use crate::folder;
 use crate::image;
-use crate::scenario::{Conditions, Homing, Route, Scenario, Spacing};
+use crate::scenario::{Homing, Route, Scenario, Spacing};
 use crate::summary::{DirectionFigures, Summary};
 
 /// The board a flight is flown on.
@@ -48,6 +49,8 @@ pub struct ScenarioArguments {
     /// How the drone finds back
     #[arg(long, value_enum, default_value_t)]
     pub homing: Homing,
+    #[command(flatten)]
+    pub conditions: ConditionArguments,
 }
 
 impl ScenarioArguments {
@@ -59,7 +62,7 @@ impl ScenarioArguments {
             seed,
             spacing: self.spacing,
             homing: self.homing,
-            conditions: Conditions::default(),
+            conditions: self.conditions.conditions(),
         }
     }
 }
@@ -79,7 +82,9 @@ fn parse_spacing(text: &str) -> Result<Spacing, String> {
     hil fly                                 the paper's U on the emulated board\n  \
     hil fly --backend native --seed 7       the same logic, without a processor\n  \
     hil fly --route s --spacing 1 --json    one JSON object on stdout\n  \
-    hil fly --route line --homing sequence  home by the camera alone\n\n\
+    hil fly --route line --homing sequence  home by the camera alone\n  \
+    hil fly --corrupt 1% --quirk self-acknowledge\n  \
+    hil fly --restart-autopilot 120         a brown-out in mid-route\n\n\
     In a checkout, `cargo fly` is `hil fly`, built first.\n\
     Exit code 0: the drone came home. 1: it did not. 2: the flight could not be flown.")]
 pub struct Arguments {

@@ -4,6 +4,7 @@
 //! does not hold). 2: it could not be done (wrong options, no compiler, a chip that stopped).
 
 mod campaign;
+mod conditions;
 mod console;
 mod drift;
 mod ekf_replay;

@@ -1,6 +1,8 @@
 //! All that flies and is not the camera board: vehicle, motion sensors, filter, controllers and the
 //! flight app.
 
+use core::f64::consts::TAU;
+
 use autopilot::app::{self, FlightApp, Script, Settings};
 use autopilot::controller::{ControllerParameters, MotorCommands, SetPoint};
 use autopilot::ekf::{self, Ekf, Estimate, ImuSample, Measurement};
@@ -8,15 +10,20 @@ use autopilot::vehicle::{PAPER_MASS_KG, Truth, Vehicle, VehicleParameters};
 use autopilot::{FlyingDetector, Stabiliser};
 use fake_sensors::camera;
 use fake_sensors::motion::{MotionReadings, MotionSensors, MotionTruth, SensorModel};
+use fake_sensors::random::Normal;
+use fake_sensors::wind::{Wind, WindModel};
 use link::Message;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::record::PlanarPose;
 use crate::recorder::Glimpse;
-use crate::scenario::Scenario;
+use crate::scenario::{Conditions, Scenario};
 
 /// How high the camera looks out above the drone's feet, metres.
 const CAMERA_HEIGHT_M: f32 = 0.04;
+
+/// Stream of the seed that draws where the wind comes from, clear of the sensors'.
+const WIND_DIRECTION_STREAM: u64 = u64::from_be_bytes(*b"windfrom");
 
 /// A Crazyflie without its camera board.
 #[derive(Debug)]
@@ -33,6 +40,7 @@ pub struct Aircraft {
     measurements: Vec<Measurement>,
     reset_filter: bool,
     set_point: SetPoint,
+    wind: Option<Wind>,
 }
 
 impl Aircraft {
@@ -49,13 +57,14 @@ impl Aircraft {
             ),
             sensors: MotionSensors::new(&SensorModel::default(), scenario.seed),
             stabiliser: Stabiliser::new(filter, &ControllerParameters::default(), 0),
-            app: FlightApp::new(script, Settings::default()),
+            app: FlightApp::new(script, settings(&scenario.conditions)),
             uncorrected: Ekf::new(filter, 0),
             flying: FlyingDetector::default(),
             motors: MotorCommands::STOPPED,
             measurements: Vec::new(),
             reset_filter: false,
             set_point: SetPoint::MotorsOff,
+            wind: wind(scenario),
         }
     }
 
@@ -68,6 +77,9 @@ impl Aircraft {
         self.measurements = output.measurements;
         self.reset_filter = output.reset_filter;
         self.set_point = output.set_point;
+        if let Some(wind) = &mut self.wind {
+            self.vehicle.set_wind(wind.tick());
+        }
         self.vehicle.step(&self.motors);
         output.transmit
     }
@@ -140,6 +152,23 @@ pub fn camera_pose(position_m: &Vector3<f64>, attitude: &UnitQuaternion<f64>) ->
         position_m: position_m.cast() + attitude * above_feet,
         attitude,
     }
+}
+
+/// The app's settings in a flight.
+fn settings(conditions: &Conditions) -> Settings {
+    Settings {
+        quirks: conditions.quirks,
+        correction: conditions.correction.sd(),
+        ..Settings::default()
+    }
+}
+
+/// The air, if it moves.
+fn wind(scenario: &Scenario) -> Option<Wind> {
+    let wind = scenario.conditions.wind?;
+    let from_rad = TAU * Normal::new(scenario.seed, WIND_DIRECTION_STREAM).uniform();
+    let model = WindModel::new(wind.mean_m_s, from_rad, wind.turbulence);
+    Some(Wind::new(&model, scenario.seed))
 }
 
 /// The camera of a drone that stands at the start of the route, facing north.

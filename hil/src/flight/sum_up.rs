@@ -54,6 +54,7 @@ pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary 
         route: scenario.route.name().to_owned(),
         homing: scenario.homing.name(),
         spacing_m: scenario.snapshot_spacing_m(),
+        conditions: scenario.conditions,
         outbound_m,
         inbound_m: metrics::length(&inbound),
         home_error_m: last.map_or(0.0, |last| last.truth.distance(&home)),

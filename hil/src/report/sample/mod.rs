@@ -3,6 +3,7 @@
 mod flight;
 
 use crate::record::{FrameMark, LogLine, Recording, WallSegment};
+use crate::scenario::Conditions;
 use crate::summary::{CyclesPerFrame, FirmwareFigures, LinkFigures, Summary};
 
 const FRAME_HZ: f64 = 30.0;
@@ -56,6 +57,7 @@ fn summary() -> Summary {
         route: "u".into(),
         homing: "both",
         spacing_m: 2.0,
+        conditions: Conditions::default(),
         outbound_m: 56.0,
         inbound_m: 57.3,
         home_error_m: 0.12,

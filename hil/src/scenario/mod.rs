@@ -1,8 +1,12 @@
 //! What is to be flown: route, world, seed and the navigator's settings.
 
+mod conditions;
+
 use autopilot::app;
 use clap::ValueEnum;
 use link::{Record, WorldPoint};
+
+pub use conditions::{Conditions, Correction, Quirk, Wind};
 
 /// The scripted way out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -96,17 +100,8 @@ pub struct Scenario {
     pub spacing: Spacing,
     /// How the drone finds back.
     pub homing: Homing,
-    /// What goes wrong on the way.
+    /// What the flight is up against.
     pub conditions: Conditions,
-}
-
-/// What goes wrong in a flight. Nothing, by default.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Conditions {
-    /// Share of the link's bytes, both ways, that arrive as another byte, 0..=1.
-    pub corrupted_share: f64,
-    /// When the autopilot restarts, seconds of flight.
-    pub restart_s: Option<f64>,
 }
 
 impl Scenario {

@@ -1,0 +1,122 @@
+//! Options for what a flight is up against; shared by `fly` and `campaign`.
+
+use autopilot::app::Quirks;
+use clap::Args;
+
+use crate::scenario::{Conditions, Correction, Quirk, Wind};
+
+/// The wind of the strongest gale, m/s (Beaufort 12 begins at 32.7 m/s).
+const STRONGEST_WIND_M_S: f64 = 32.0;
+
+/// What the flight is up against.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Conditions")]
+pub struct ConditionArguments {
+    /// Share of the link's bytes, both ways, that arrive as another byte: 0.01 or 1%
+    #[arg(long, value_name = "SHARE", default_value = "0", value_parser = parse_share, hide_default_value = true)]
+    corrupt: f64,
+    /// The autopilot restarts after so many seconds of flight; the drone falls where it is, and the operator starts
+    /// it again
+    #[arg(long, value_name = "SECONDS", value_parser = parse_time)]
+    restart_autopilot: Option<f64>,
+    /// A peculiarity of the published flight app that this one is to have as well; repeatable
+    #[arg(long = "quirk", value_name = "NAME", value_enum)]
+    quirks: Vec<Quirk>,
+    /// The flight app has no peculiarity but those named
+    #[arg(long)]
+    no_quirks: bool,
+    /// How firmly the autopilot's filter believes the camera
+    #[arg(long, value_enum, default_value_t)]
+    correction: Correction,
+    /// Wind, m/s, from a direction that the seed draws; after a comma, turbulence as a share of it
+    #[arg(long, value_name = "MEAN[,TURBULENCE]", value_parser = parse_wind)]
+    wind: Option<Wind>,
+}
+
+impl ConditionArguments {
+    /// The conditions that were asked for.
+    pub fn conditions(&self) -> Conditions {
+        let mut quirks = if self.no_quirks {
+            Quirks::NONE
+        } else {
+            Quirks::default()
+        };
+        for quirk in &self.quirks {
+            *quirk.of(&mut quirks) = true;
+        }
+        Conditions {
+            corrupted_share: self.corrupt,
+            restart_s: self.restart_autopilot,
+            quirks,
+            correction: self.correction,
+            wind: self.wind,
+        }
+    }
+}
+
+fn parse_share(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(percent) => (percent, 0.01),
+        None => (text, 1.0),
+    };
+    number
+        .parse()
+        .ok()
+        .map(|number: f64| number * unit)
+        .filter(|share| (0.0..=1.0).contains(share))
+        .ok_or_else(|| "a share from 0 to 1, or from 0% to 100%".to_owned())
+}
+
+fn parse_time(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|seconds: &f64| seconds.is_finite() && *seconds >= 0.0)
+        .ok_or_else(|| "a time in seconds from the start of the flight".to_owned())
+}
+
+fn parse_wind(text: &str) -> Result<Wind, String> {
+    let (mean, turbulence) = text.split_once(',').unwrap_or((text, "0"));
+    let number = |text: &str| text.parse::<f64>().ok().filter(|number| *number >= 0.0);
+    match (number(mean), number(turbulence)) {
+        (Some(mean_m_s), Some(turbulence))
+            if mean_m_s <= STRONGEST_WIND_M_S && turbulence <= 1.0 =>
+        {
+            Ok(Wind {
+                mean_m_s,
+                turbulence,
+            })
+        }
+        _ => Err(format!(
+            "a speed from 0 to {STRONGEST_WIND_M_S} m/s and, after a comma, a turbulence from 0 to 1: 1.5,0.2"
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_is_a_number_or_a_percentage() {
+        assert_eq!(parse_share("0.01"), Ok(0.01));
+        assert_eq!(parse_share("1%"), Ok(0.01));
+        for nonsense in ["", "%", "-1%", "101%", "2", "NaN", "one"] {
+            assert!(parse_share(nonsense).is_err(), "{nonsense}");
+        }
+    }
+
+    #[test]
+    fn wind_is_a_speed_with_or_without_turbulence() {
+        let wind = |mean_m_s, turbulence| {
+            Ok(Wind {
+                mean_m_s,
+                turbulence,
+            })
+        };
+        assert_eq!(parse_wind("1.5"), wind(1.5, 0.0));
+        assert_eq!(parse_wind("1.5,0.2"), wind(1.5, 0.2));
+        for nonsense in ["", "-1", "1,", "1,2,3", "1,1.5", "99", "NaN"] {
+            assert!(parse_wind(nonsense).is_err(), "{nonsense}");
+        }
+    }
+}

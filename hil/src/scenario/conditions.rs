@@ -1,0 +1,118 @@
+//! What a flight is up against: faults, the autopilot's ways, and the weather.
+
+use autopilot::app::{CorrectionSd, Quirks};
+use clap::ValueEnum;
+use serde::{Serialize, Serializer};
+
+/// Nothing out of the ordinary, by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Conditions {
+    /// Share of the link's bytes, both ways, that arrive as another byte, 0..=1.
+    pub corrupted_share: f64,
+    /// When the autopilot restarts, seconds of flight.
+    pub restart_s: Option<f64>,
+    /// The flight app's peculiarities on the link; in a summary, the names of those it has.
+    #[serde(serialize_with = "names")]
+    pub quirks: Quirks,
+    /// How firmly the autopilot's filter believes the camera.
+    pub correction: Correction,
+    /// The wind; none for still air.
+    pub wind: Option<Wind>,
+}
+
+/// How firmly the autopilot's filter is told to believe a correction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Correction {
+    /// All but overwrites the estimate: 0.001 m, 0.002 rad (the published app since May 2023)
+    #[default]
+    Overwrite,
+    /// Averages positions and hardly touches the heading: 0.5 m, 0.17 rad (August 2022)
+    Soft,
+}
+
+impl Correction {
+    /// The standard deviations that the app gives its filter.
+    pub fn sd(self) -> CorrectionSd {
+        match self {
+            Self::Overwrite => CorrectionSd::OVERWRITE,
+            Self::Soft => CorrectionSd::SOFT,
+        }
+    }
+}
+
+/// A horizontal wind from a direction that the flight's seed draws.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Wind {
+    /// Mean speed, m/s.
+    pub mean_m_s: f64,
+    /// Turbulence intensity: standard deviation of the horizontal components over the mean speed.
+    pub turbulence: f64,
+}
+
+/// A peculiarity of the published flight app on the link, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Quirk {
+    /// Takes its own command for the camera's echo: sends each one once
+    SelfAcknowledge,
+    /// Handles the last message of the cycle before once more
+    StackLeftovers,
+    /// Handles the last message again where nothing came
+    RepeatsLastMessage,
+    /// Never uses what the tenth receive call of a cycle brings
+    DropsTenthMessage,
+    /// Has room for 200 bytes
+    ShortBuffer,
+    /// Reads in the air what came on the ground
+    KeepsGroundBytes,
+    /// Finds frames as the generated C receiver does
+    PublishedReceiver,
+    /// Hands every number on, NaN as well
+    UncheckedValues,
+}
+
+impl Quirk {
+    /// Its switch.
+    pub fn of(self, quirks: &mut Quirks) -> &mut bool {
+        match self {
+            Self::SelfAcknowledge => &mut quirks.self_acknowledge,
+            Self::StackLeftovers => &mut quirks.stack_leftovers,
+            Self::RepeatsLastMessage => &mut quirks.repeats_last_message,
+            Self::DropsTenthMessage => &mut quirks.drops_tenth_message,
+            Self::ShortBuffer => &mut quirks.short_buffer,
+            Self::KeepsGroundBytes => &mut quirks.keeps_ground_bytes,
+            Self::PublishedReceiver => &mut quirks.published_receiver,
+            Self::UncheckedValues => &mut quirks.unchecked_values,
+        }
+    }
+}
+
+/// The peculiarities that are switched on, by their names on the command line.
+fn names<S: Serializer>(quirks: &Quirks, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut quirks = *quirks;
+    let on = Quirk::value_variants()
+        .iter()
+        .filter(|quirk| *quirk.of(&mut quirks))
+        .filter_map(Quirk::to_possible_value);
+    serializer.collect_seq(on.map(|value| value.get_name().to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_summary_names_the_quirks_that_are_switched_on() {
+        let mut conditions = Conditions {
+            quirks: Quirks::NONE,
+            ..Conditions::default()
+        };
+        for quirk in Quirk::value_variants() {
+            *quirk.of(&mut conditions.quirks) = true;
+            let json = serde_json::to_value(conditions).expect("JSON");
+            let name = quirk.to_possible_value().expect("a name");
+            assert_eq!(json["quirks"], serde_json::json!([name.get_name()]));
+            *quirk.of(&mut conditions.quirks) = false;
+        }
+    }
+}
