@@ -1,7 +1,9 @@
 //! Claims about the filter from its equations, for what the recorded sequences leave out.
 
+mod against_oracle;
 mod models;
 mod motion;
+mod oracle;
 mod replay;
 mod task;
 
