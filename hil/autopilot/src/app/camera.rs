@@ -1,13 +1,15 @@
 //! The camera as the app sees it: what is sent to it, and what its messages do.
 
-use link::{Implausible, Message, Mode, State, WorldPoint, WorldPose};
+use link::{Implausible, Message, Mode, State, Vector, WorldPoint, WorldPose};
 use nalgebra::Vector3;
 
 use super::correction::Corrections;
+use super::dropped::Dropped;
 use super::goal::Goal;
 use super::handshake::Handshake;
-use super::settings::CorrectionSd;
-use super::uart::Uart;
+use super::receive_loop::{Delivery, ReceiveLoop};
+use super::settings::Settings;
+use super::value_check::ValueCheck;
 use crate::ekf::Measurement;
 
 /// A message the app has taken from its UART.
@@ -34,7 +36,9 @@ pub struct Counters {
     pub overflowed_bytes: u64,
     /// Messages beyond the nine that a cycle can use.
     pub unused_messages: u32,
-    /// What the parser has seen.
+    /// Times that a message was handled that had not just come.
+    pub repeats: u32,
+    /// What the receiver has seen.
     pub link: link::Counters,
 }
 
@@ -50,35 +54,48 @@ pub enum News {
 /// Both directions of the link, and the state that its messages have.
 #[derive(Debug)]
 pub struct Camera {
-    uart: Uart,
+    receive_loop: ReceiveLoop,
+    keeps_ground_bytes: bool,
     handshake: Handshake,
     goal: Goal,
+    /// The vector received last.
+    vector: Option<Vector>,
     corrections: Corrections,
-    /// Read in this window, not yet handled.
-    heard: Vec<Message>,
+    check: ValueCheck,
     received: Vec<Received>,
     states_sent: u32,
     commands_sent: u32,
+    corrections_ignored: u32,
 }
 
 impl Camera {
     /// A camera that has not been heard of.
-    pub fn new(correction_sd: CorrectionSd) -> Self {
+    pub fn new(settings: &Settings) -> Self {
         Self {
-            uart: Uart::new(),
+            receive_loop: ReceiveLoop::new(settings.quirks),
+            keeps_ground_bytes: settings.quirks.keeps_ground_bytes,
             handshake: Handshake::default(),
             goal: Goal::default(),
-            corrections: Corrections::new(correction_sd),
-            heard: Vec::new(),
+            vector: None,
+            corrections: Corrections::new(settings),
+            check: settings.quirks.value_check(),
             received: Vec::new(),
             states_sent: 0,
             commands_sent: 0,
+            corrections_ignored: 0,
         }
     }
 
     /// Bytes arrive, whether the app reads or not.
-    pub fn arrive(&mut self, bytes: &[u8]) {
-        self.uart.arrive(bytes);
+    pub fn arrive(&mut self, now_ms: u64, bytes: &[u8]) {
+        self.receive_loop.uart().arrive(now_ms, bytes);
+    }
+
+    /// The drone has taken off: from now on there are cycles.
+    pub fn begin(&mut self, now_ms: u64) {
+        if !self.keeps_ground_bytes {
+            self.receive_loop.uart().clear(now_ms);
+        }
     }
 
     /// Wants `mode`; whether the camera was in it at the last cycle.
@@ -99,32 +116,55 @@ impl Camera {
         }
     }
 
+    /// The measurements that realign the filter with a drone that has homed to `place`; `None` where
+    /// no vector has come.
+    ///
+    /// # Errors
+    /// [`Implausible`] if the last vector asks for a turn that is no angle.
+    pub fn realignment(
+        &self,
+        place: WorldPoint,
+        height_m: f32,
+    ) -> Result<Option<[Measurement; 2]>, Implausible> {
+        let Some(vector) = &self.vector else {
+            return Ok(None);
+        };
+        let turn_rad = self.check.turn(vector)?;
+        let measurements = self.corrections.realignment(place, height_m, turn_rad);
+        Ok(Some(measurements))
+    }
+
     /// The bytes a cycle sends: STATE, and COMMAND as long as its echo is missing. Begins to read.
-    pub fn report(&mut self, pose: WorldPose) -> Vec<u8> {
+    pub fn report(&mut self, now_ms: u64, pose: WorldPose) -> Vec<u8> {
         let mut bytes = Message::State(State::from_world(pose)).encode().to_vec();
         self.states_sent += 1;
-        if let Some(command) = self.handshake.cycle() {
+        let command = self.handshake.cycle();
+        self.receive_loop.begin(now_ms, command.as_ref());
+        if let Some(command) = command {
             bytes.extend(Message::Command(command).encode());
             self.commands_sent += 1;
         }
-        self.uart.open_window();
         bytes
     }
 
     /// Whether the app is reading.
     pub fn listening(&self) -> bool {
-        self.uart.window_is_open()
+        self.receive_loop.is_running()
     }
 
     /// Stops reading.
-    pub fn stop_listening(&mut self) {
-        self.heard.clear();
-        self.uart.close_window();
+    pub fn stop_listening(&mut self, now_ms: u64) {
+        self.receive_loop.abort(now_ms);
     }
 
     /// One receive call; does nothing unless the app is reading.
-    pub fn listen(&mut self) {
-        self.heard.extend(self.uart.receive());
+    pub fn listen(&mut self, now_ms: u64) {
+        self.receive_loop.call(now_ms);
+    }
+
+    /// Nobody is going to read what arrives.
+    pub fn abandon(&mut self, now_ms: u64) {
+        self.receive_loop.uart().abandon(now_ms);
     }
 
     /// Does what the messages of this window ask for, in order; what they mean for the rest.
@@ -133,18 +173,35 @@ impl Camera {
     /// the end, so that a flight does not depend on the microseconds of the camera's answer.
     ///
     /// # Errors
-    /// [`Implausible`] if a target or a correction cannot be believed.
+    /// [`Implausible`] if a target or a correction cannot be.
     pub fn act(&mut self, now_ms: u64, estimate_m: Vector3<f32>) -> Result<Vec<News>, Implausible> {
         let mut news = Vec::new();
-        for message in std::mem::take(&mut self.heard) {
-            let handled = self.handle(&message, estimate_m);
-            self.received.push(Received {
-                at_ms: now_ms,
-                message,
-            });
-            news.extend(handled?);
+        for delivery in self.receive_loop.take() {
+            match delivery {
+                Delivery::New(heard) => {
+                    let handled = self.handle(&heard.message, estimate_m);
+                    let is_correction = matches!(heard.message, Message::InsCorrection(_));
+                    self.corrections_ignored += u32::from(is_correction && handled == Ok(None));
+                    self.received.push(Received {
+                        at_ms: now_ms,
+                        message: heard.message,
+                    });
+                    news.extend(handled?);
+                }
+                // What stands between a repeated correction and the filter is its index alone. An
+                // operator, though, is not told twice where the camera is.
+                Delivery::Stale(message) => {
+                    let handled = self.handle(&message, estimate_m)?;
+                    news.extend(handled.filter(|news| matches!(news, News::Realigned(_))));
+                }
+            }
         }
         Ok(news)
+    }
+
+    /// The frames dropped since the last call, in the order in which that became certain.
+    pub fn take_dropped(&mut self) -> Vec<Dropped> {
+        self.receive_loop.take_dropped()
     }
 
     /// The messages handled since the last call, in order.
@@ -158,10 +215,11 @@ impl Camera {
             states_sent: self.states_sent,
             commands_sent: self.commands_sent,
             corrections_applied: self.corrections.applied(),
-            corrections_ignored: self.corrections.ignored(),
-            overflowed_bytes: self.uart.overflowed_bytes(),
-            unused_messages: self.uart.unused_messages(),
-            link: self.uart.counters(),
+            corrections_ignored: self.corrections_ignored,
+            overflowed_bytes: self.receive_loop.counted().overflowed_bytes(),
+            unused_messages: self.receive_loop.unused_messages(),
+            repeats: self.receive_loop.repeats(),
+            link: self.receive_loop.counted().counters(),
         }
     }
 
@@ -172,7 +230,10 @@ impl Camera {
     ) -> Result<Option<News>, Implausible> {
         match message {
             Message::Command(command) => self.handshake.receive(command.command),
-            Message::Vector(vector) => self.goal.receive(vector.target()?),
+            Message::Vector(vector) => {
+                self.goal.receive(self.check.target(vector)?);
+                self.vector = Some(vector.clone());
+            }
             Message::Map(map) => return Ok(Some(News::ActiveSnapshot(map.snapshot_index))),
             Message::InsCorrection(correction) => {
                 let measurements = self.corrections.apply(correction, estimate_m)?;

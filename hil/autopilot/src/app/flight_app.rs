@@ -1,16 +1,19 @@
 //! The app itself: from the ground to the ground, one millisecond at a time.
 
-use link::{WorldPoint, WorldPose};
+use link::{Mode, WorldPoint, WorldPose};
 use nalgebra::Vector3;
 
 use super::camera::{Camera, Counters, News, Received};
+use super::dropped::Dropped;
 use super::mission::{Decision, Mission, View};
 use super::phase::{Outcome, Phase};
+use super::safety;
 use super::script::Script;
 use super::settings::{CYCLE_MS, FLIGHT_HEIGHT_M, Settings};
+use super::signals::Signals;
 use super::vertical;
 use crate::controller::SetPoint;
-use crate::ekf::{Estimate, Measurement};
+use crate::ekf::{Estimate, Measurement, Position};
 
 /// What one millisecond asks for.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,9 +52,12 @@ enum Stage {
 #[derive(Debug)]
 pub struct FlightApp {
     settings: Settings,
+    signals: Signals,
     mission: Mission,
     camera: Camera,
     stage: Stage,
+    /// Whether the motors stand still in this flight.
+    dry_run: bool,
     /// Time of the first tick, ms.
     started_ms: Option<u64>,
     /// Where to be, m.
@@ -69,9 +75,11 @@ impl FlightApp {
     pub fn new(script: Script, settings: Settings) -> Self {
         Self {
             settings,
+            signals: Signals::default(),
             mission: Mission::new(script, settings),
-            camera: Camera::new(settings.correction),
+            camera: Camera::new(&settings),
             stage: Stage::Ground,
+            dry_run: false,
             started_ms: None,
             position_m: Vector3::zeros(),
             yaw_rad: 0.0,
@@ -83,7 +91,7 @@ impl FlightApp {
     /// One millisecond: `estimate` is the filter's newest, `received` what arrived from the camera
     /// since the last call. To be called once for each `now_ms`, in order.
     pub fn tick(&mut self, now_ms: u64, estimate: &Estimate, received: &[u8]) -> Output {
-        self.camera.arrive(received);
+        self.camera.arrive(now_ms, received);
         let mut output = Output {
             transmit: Vec::new(),
             set_point: SetPoint::MotorsOff,
@@ -92,7 +100,7 @@ impl FlightApp {
         };
         self.obey(now_ms, estimate);
         match self.stage {
-            Stage::Ground => self.stand(now_ms, &mut output),
+            Stage::Ground => self.stand(now_ms, estimate, &mut output),
             Stage::TakeOff { since_ms, from } => self.take_off(now_ms, since_ms, from, estimate),
             Stage::Airborne { since_ms } => self.fly(now_ms, since_ms, estimate, &mut output),
             Stage::Landing {
@@ -100,7 +108,7 @@ impl FlightApp {
                 height_m,
                 outcome,
             } => self.land(now_ms - since_ms, height_m, outcome),
-            Stage::Landed(_) => {}
+            Stage::Landed(_) => self.rest(now_ms, estimate, &mut output),
         }
         output.set_point = self.set_point();
         output
@@ -127,9 +135,25 @@ impl FlightApp {
         self.ordered.get_or_insert(Outcome::LandCommanded);
     }
 
+    /// One of the operator's buttons for the camera: any [`Mode`]. Obeyed in [`super::Step::Buttons`].
+    pub fn press(&mut self, button: Mode) {
+        self.mission.press(button);
+    }
+
+    /// The switches and the drone's health from now on. The app starts with [`Signals::default`].
+    pub fn set_signals(&mut self, signals: Signals) {
+        self.signals = signals;
+    }
+
     /// The messages handled since the last call, in order.
     pub fn take_received(&mut self) -> Vec<Received> {
         self.camera.take_received()
+    }
+
+    /// The frames of the camera that were dropped since the last call, in the order in which that
+    /// became certain.
+    pub fn take_dropped(&mut self) -> Vec<Dropped> {
+        self.camera.take_dropped()
     }
 
     /// How often each thing happened.
@@ -151,8 +175,9 @@ impl FlightApp {
     fn motors_turn(&self) -> bool {
         match self.stage {
             Stage::Ground | Stage::Landed(_) => false,
-            Stage::TakeOff { from, .. } => from.is_some(),
-            Stage::Airborne { .. } | Stage::Landing { .. } => true,
+            Stage::TakeOff { from, .. } => from.is_some() && !self.dry_run,
+            Stage::Airborne { .. } => !self.dry_run,
+            Stage::Landing { .. } => true,
         }
     }
 
@@ -167,15 +192,36 @@ impl FlightApp {
         }
     }
 
-    fn stand(&mut self, now_ms: u64, output: &mut Output) {
+    fn stand(&mut self, now_ms: u64, estimate: &Estimate, output: &mut Output) {
         let started_ms = *self.started_ms.get_or_insert(now_ms);
-        if now_ms - started_ms >= self.settings.ground_ms {
-            output.reset_filter = true;
-            self.stage = Stage::TakeOff {
-                since_ms: now_ms,
-                from: None,
-            };
+        let is_calibrated = now_ms - started_ms >= self.settings.ground_ms;
+        if !is_calibrated || safety::forbids_take_off(&self.settings, &self.signals) {
+            self.zero(now_ms, estimate, output);
+            return;
         }
+        self.dry_run = self.signals.dry_run;
+        output.reset_filter = true;
+        self.stage = Stage::TakeOff {
+            since_ms: now_ms,
+            from: None,
+        };
+    }
+
+    /// Tells the filter ten times a second that a drone on the ground is at the origin.
+    fn zero(&self, now_ms: u64, estimate: &Estimate, output: &mut Output) {
+        let height_m = estimate.position_m.z;
+        if self.settings.zeroes_on_ground && self.is_cycle(now_ms) && height_m.is_finite() {
+            output.measurements.push(Measurement::Position(Position {
+                position_m: Vector3::new(0.0, 0.0, height_m),
+                sd_m: self.settings.correction.position_m,
+            }));
+        }
+    }
+
+    /// On the ground after the flight.
+    fn rest(&mut self, now_ms: u64, estimate: &Estimate, output: &mut Output) {
+        self.camera.abandon(now_ms);
+        self.zero(now_ms, estimate, output);
     }
 
     fn take_off(
@@ -191,32 +237,39 @@ impl FlightApp {
         let from = from.unwrap_or_else(|| pose(estimate));
         self.position_m = Vector3::new(from.x, from.y, vertical::climb_m(climbing_ms));
         self.yaw_rad = from.yaw;
-        self.stage = if climbing_ms < vertical::CLIMB_MS + vertical::HOVER_MS {
-            Stage::TakeOff {
+        if !self.dry_run && climbing_ms < vertical::CLIMB_MS + vertical::HOVER_MS {
+            self.stage = Stage::TakeOff {
                 since_ms,
                 from: Some(from),
-            }
+            };
         } else {
-            Stage::Airborne { since_ms: now_ms }
-        };
+            self.camera.begin(now_ms);
+            self.stage = Stage::Airborne { since_ms: now_ms };
+        }
+    }
+
+    /// Whether the loop runs in this millisecond.
+    fn is_cycle(&self, now_ms: u64) -> bool {
+        now_ms % CYCLE_MS == self.settings.cycle_offset_ms % CYCLE_MS
     }
 
     fn fly(&mut self, now_ms: u64, since_ms: u64, estimate: &Estimate, output: &mut Output) {
-        if now_ms % CYCLE_MS == self.settings.cycle_offset_ms % CYCLE_MS {
+        if self.is_cycle(now_ms) {
             match self.decide(now_ms, since_ms, estimate) {
                 Decision::Land(outcome) => {
                     self.begin_landing(now_ms, estimate, outcome);
                     return;
                 }
                 Decision::GoTo(target) => self.next_target = Some(target),
+                Decision::Realign(measurements) => output.measurements.extend(measurements),
                 Decision::Hold => {}
             }
-            output.transmit = self.camera.report(pose(estimate));
+            output.transmit = self.camera.report(now_ms, pose(estimate));
         }
         if !self.camera.listening() {
             return;
         }
-        self.camera.listen();
+        self.camera.listen(now_ms);
         if self.camera.listening() {
             return;
         }
@@ -243,7 +296,8 @@ impl FlightApp {
 
     /// The first part of a run of the loop: whether to go on, and where.
     fn decide(&mut self, now_ms: u64, since_ms: u64, estimate: &Estimate) -> Decision {
-        if let Some(danger) = self.danger(estimate) {
+        let danger = safety::danger(&self.settings, &self.signals, self.dry_run, estimate);
+        if let Some(danger) = danger {
             return Decision::Land(danger);
         }
         if now_ms - since_ms >= self.settings.flight_limit_ms {
@@ -252,26 +306,13 @@ impl FlightApp {
         let view = View {
             now_ms,
             position: pose(estimate).point(),
+            height_m: estimate.position_m.z,
             set_point: WorldPoint {
                 x: self.position_m.x,
                 y: self.position_m.y,
             },
         };
         self.mission.cycle(&view, &mut self.camera)
-    }
-
-    /// Why it is not safe to go on, if it is not.
-    fn danger(&self, estimate: &Estimate) -> Option<Outcome> {
-        let position = estimate.position_m;
-        if !position.iter().all(|coordinate| coordinate.is_finite()) {
-            Some(Outcome::PositionLost)
-        } else if libm::hypotf(position.x, position.y) >= self.settings.max_distance_m {
-            Some(Outcome::FenceBreached)
-        } else if position.z >= self.settings.max_height_m {
-            Some(Outcome::TooHigh)
-        } else {
-            None
-        }
     }
 
     /// The last part of a run of the loop, when the window has closed.
@@ -282,27 +323,26 @@ impl FlightApp {
     }
 
     /// Straight down from here; where the filter does not know where that is, from the set-point.
-    /// Does nothing unless the drone is in the air and not landing yet.
+    /// Does nothing to a drone that is landing already. Motors that stand still are not started.
     fn begin_landing(&mut self, now_ms: u64, estimate: &Estimate, outcome: Outcome) {
-        match self.stage {
-            Stage::TakeOff { from: Some(_), .. } | Stage::Airborne { .. } => {
-                let here = estimate.position_m;
-                if here.iter().all(|coordinate| coordinate.is_finite()) {
-                    self.position_m = here;
-                }
-                self.camera.stop_listening();
-                self.next_target = None;
-                self.stage = Stage::Landing {
-                    since_ms: now_ms,
-                    height_m: self.position_m.z,
-                    outcome,
-                };
-            }
-            Stage::Ground | Stage::TakeOff { from: None, .. } => {
-                self.stage = Stage::Landed(outcome);
-            }
-            Stage::Landing { .. } | Stage::Landed(_) => {}
+        if matches!(self.stage, Stage::Landing { .. } | Stage::Landed(_)) {
+            return;
         }
+        self.camera.stop_listening(now_ms);
+        self.next_target = None;
+        if !self.motors_turn() {
+            self.stage = Stage::Landed(outcome);
+            return;
+        }
+        let here = estimate.position_m;
+        if here.iter().all(|coordinate| coordinate.is_finite()) {
+            self.position_m = here;
+        }
+        self.stage = Stage::Landing {
+            since_ms: now_ms,
+            height_m: self.position_m.z,
+            outcome,
+        };
     }
 
     fn land(&mut self, elapsed_ms: u64, height_m: f32, outcome: Outcome) {

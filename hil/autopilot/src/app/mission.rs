@@ -1,12 +1,13 @@
 //! Flies a script: one step after the other, one look at each in every cycle.
 
-use link::{Mode, WorldPoint};
+use link::{Implausible, Mode, WorldPoint};
 
 use super::camera::Camera;
 use super::phase::{Outcome, Phase};
 use super::route::{Arrival, distance_m};
 use super::script::{FIRST_SNAPSHOT, Script, Step, Until};
 use super::settings::{CYCLE_MS, Settings};
+use crate::ekf::Measurement;
 
 /// Period of the loop, s.
 const CYCLE_S: f32 = CYCLE_MS as f32 / 1_000.0;
@@ -18,6 +19,8 @@ pub struct View {
     pub now_ms: u64,
     /// Where the drone believes to be.
     pub position: WorldPoint,
+    /// How high it believes to be, m.
+    pub height_m: f32,
     /// Where it has been sent.
     pub set_point: WorldPoint,
 }
@@ -29,6 +32,8 @@ pub enum Decision {
     Hold,
     /// Fly to a place.
     GoTo(WorldPoint),
+    /// Keep the set-point, and tell the filter this.
+    Realign([Measurement; 2]),
     /// End the flight.
     Land(Outcome),
 }
@@ -43,6 +48,8 @@ pub struct Mission {
     /// Who leads in this step, and after the last one until the drone lands.
     phase: Phase,
     progress: Progress,
+    /// The operator's button pressed last.
+    button: Mode,
 }
 
 /// How far a step has been flown.
@@ -82,7 +89,13 @@ impl Mission {
             step,
             steps,
             progress: Progress::default(),
+            button: Mode::Idle,
         }
+    }
+
+    /// The operator presses a button.
+    pub fn press(&mut self, button: Mode) {
+        self.button = button;
     }
 
     /// Whether the script or the camera leads.
@@ -119,6 +132,8 @@ impl Mission {
                 let done = self.followed(*until, elapsed_ms, view, target.is_some());
                 (self.follow(target, elapsed_ms), done)
             }
+            Step::Realign { place } => (realign(*place, view, camera), true),
+            Step::Buttons => (self.obey_buttons(camera), false),
         };
         if done {
             self.step = self.steps.next();
@@ -166,6 +181,19 @@ impl Mission {
         target.map_or(Decision::Hold, Decision::GoTo)
     }
 
+    /// The operator leads.
+    fn obey_buttons(&mut self, camera: &mut Camera) -> Decision {
+        let mode = self.button;
+        if leads(mode) {
+            self.phase = Phase::Following;
+            camera.follow(mode).map_or(Decision::Hold, Decision::GoTo)
+        } else {
+            self.phase = Phase::Recording;
+            camera.command(mode, &[]);
+            Decision::Hold
+        }
+    }
+
     /// Whether following is done.
     fn followed(&mut self, until: Until, elapsed_ms: u64, view: &View, turned: bool) -> bool {
         let there = distance_m(view.position, view.set_point) <= Arrival::PASS_END.radius_m;
@@ -192,7 +220,28 @@ impl Mission {
 fn phase(step: &Step) -> Phase {
     match step {
         Step::Follow { .. } => Phase::Following,
-        Step::Command { .. } | Step::FlyTo { .. } => Phase::Recording,
+        Step::Command { .. } | Step::FlyTo { .. } | Step::Realign { .. } | Step::Buttons => {
+            Phase::Recording
+        }
+    }
+}
+
+/// Whether the camera leads in a mode.
+fn leads(mode: Mode) -> bool {
+    match mode {
+        Mode::Follow | Mode::FollowAndStay => true,
+        Mode::Idle | Mode::Clear | Mode::Record(_) => false,
+    }
+}
+
+/// Tells the filter that the drone is at `place`, if the camera has led it there.
+fn realign(place: WorldPoint, view: &View, camera: &Camera) -> Decision {
+    match camera.realignment(place, view.height_m) {
+        Ok(Some(measurements)) => Decision::Realign(measurements),
+        Ok(None) => Decision::Hold,
+        Err(Implausible::NotFinite | Implausible::TooLarge) => {
+            Decision::Land(Outcome::BrokenMessage)
+        }
     }
 }
 

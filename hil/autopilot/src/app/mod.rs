@@ -21,25 +21,35 @@
 
 mod camera;
 mod correction;
+mod dropped;
 mod flight_app;
 mod goal;
 mod handshake;
+mod ledger;
 mod mission;
 mod phase;
+pub mod published_receiver;
 mod quirks;
+mod receive_loop;
+mod receiver;
 mod route;
+mod safety;
 mod script;
 mod settings;
+mod signals;
 mod uart;
+mod value_check;
 mod vertical;
 
 #[cfg(test)]
 mod tests;
 
 pub use camera::{Counters, Received};
+pub use dropped::{DropReason, Dropped};
 pub use flight_app::{FlightApp, Output};
 pub use phase::{Outcome, Phase};
 pub use quirks::Quirks;
 pub use route::{Arrival, Route, Waypoint};
 pub use script::{Script, Step, Until};
 pub use settings::{CYCLE_MS, CorrectionSd, FLIGHT_HEIGHT_M, Settings};
+pub use signals::Signals;

@@ -32,9 +32,14 @@ pub enum Outcome {
     TooHigh,
     /// The filter's position was no number.
     PositionLost,
-    /// The camera sent a target or a correction that is no number. (The published app would hand it
-    /// on to controller and filter.)
+    /// The camera sent a target or a correction that is no number or beyond all reason.
+    /// ([`Quirks::unchecked_values`](super::Quirks): the published app hands it on to controller and
+    /// filter.)
     BrokenMessage,
+    /// The radio link to the operator was down.
+    RadioLost,
+    /// The battery was low.
+    BatteryLow,
     /// The operator asked to land.
     LandCommanded,
     /// The operator stopped the motors.

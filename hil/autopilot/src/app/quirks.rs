@@ -1,5 +1,7 @@
 //! The published client's peculiarities on the link, each with a switch.
 
+use super::value_check::ValueCheck;
+
 /// What the receiving half of the app does as the published build does it, bugs included. Each field
 /// is one peculiarity: `true` behaves as the real app, `false` as an app without it.
 ///
@@ -71,6 +73,15 @@ impl Quirks {
         published_receiver: false,
         unchecked_values: false,
     };
+
+    /// How values are looked at.
+    pub(super) fn value_check(&self) -> ValueCheck {
+        if self.unchecked_values {
+            ValueCheck::Unchecked
+        } else {
+            ValueCheck::Checked
+        }
+    }
 }
 
 impl Default for Quirks {

@@ -34,6 +34,15 @@ pub enum Step {
         /// When the step is done.
         until: Until,
     },
+    /// Tell the filter that the drone is at this place, and turned by what the camera's last vector
+    /// asked for; done at once. Nothing happens where no vector has come.
+    Realign {
+        /// Where the drone has homed to.
+        place: WorldPoint,
+    },
+    /// Hover, and ask the camera for what the operator's buttons say
+    /// ([`crate::app::FlightApp::press`]); fly where it leads. Not done until the operator lands.
+    Buttons,
 }
 
 /// When following is done.

@@ -21,6 +21,15 @@ pub struct Settings {
     pub cruise_speed_m_s: Option<f32>,
     /// How firmly the filter is told to believe a correction.
     pub correction: CorrectionSd,
+    /// The share of a correction's turn that the filter is told of, 0..=1.
+    pub yaw_error_share: f32,
+    /// Whether the app, while it stands on the ground, tells the filter ten times a second that it is
+    /// at the origin.
+    pub zeroes_on_ground: bool,
+    /// Whether the drone lands when the radio link to the operator is down.
+    pub watches_radio: bool,
+    /// Whether the drone lands when the battery is low.
+    pub watches_battery: bool,
     /// Horizontal distance from the origin at which the drone lands, m.
     pub max_distance_m: f32,
     /// Height at which the drone lands, m.
@@ -58,19 +67,44 @@ impl CorrectionSd {
     };
 }
 
+impl Settings {
+    /// The published app at the end of its branch `visualhoming` (June 2023).
+    pub const VISUALHOMING_2023_06: Self = Self {
+        ground_ms: 1_000,
+        cycle_offset_ms: 0,
+        cruise_speed_m_s: None,
+        correction: CorrectionSd::OVERWRITE,
+        yaw_error_share: 1.0,
+        zeroes_on_ground: true,
+        watches_radio: true,
+        watches_battery: true,
+        max_distance_m: 8.0,
+        max_height_m: 1.0,
+        echo_limit_ms: 10_000,
+        follow_limit_ms: 900_000,
+        flight_limit_ms: 1_800_000,
+        quirks: Quirks::PUBLISHED,
+    };
+
+    /// The published app at the end of its branch `master` (August 2022): nearer fence, soft
+    /// corrections of which half the turn is used, and an operator who watches radio and battery.
+    pub const MASTER_2022_08: Self = Self {
+        correction: CorrectionSd::SOFT,
+        yaw_error_share: 0.5,
+        zeroes_on_ground: false,
+        watches_radio: false,
+        watches_battery: false,
+        max_distance_m: 4.0,
+        ..Self::VISUALHOMING_2023_06
+    };
+}
+
 impl Default for Settings {
+    /// The newest published app, with set-points that travel.
     fn default() -> Self {
         Self {
-            ground_ms: 1_000,
-            cycle_offset_ms: 0,
             cruise_speed_m_s: Some(0.5),
-            correction: CorrectionSd::OVERWRITE,
-            max_distance_m: 8.0,
-            max_height_m: 1.0,
-            echo_limit_ms: 10_000,
-            follow_limit_ms: 900_000,
-            flight_limit_ms: 1_800_000,
-            quirks: Quirks::PUBLISHED,
+            ..Self::VISUALHOMING_2023_06
         }
     }
 }

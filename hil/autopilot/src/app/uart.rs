@@ -1,83 +1,113 @@
-//! The receiving side of the deck's UART: a small buffer that is read during a tenth of the time.
+//! The receiving side of the deck's UART: a small buffer and the receiver behind it.
 
-use link::{Counters, Message, Parser};
+use std::collections::VecDeque;
+
+use link::{Counters, Message};
+
+use super::dropped::{DropReason, Dropped};
+use super::ledger::Ledger;
+use super::quirks::Quirks;
+use super::receiver::{Found, NumberedByte, Published, Receiver, Span, Strict};
 
 /// Bytes that UART2's stream buffer holds.
 const BUFFER_BYTES: usize = 200;
 
-/// Receive calls in each cycle of the app. Each waits about 1 ms for a message; here it is one call
-/// in each millisecond.
-const CALLS: u32 = 10;
+/// A message and where in the stream it stood.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Heard {
+    /// What it says.
+    pub message: Message,
+    /// Where it stood.
+    pub span: Span,
+}
 
-/// The buffer, the parser behind it, and the window in which they are read.
-///
-/// The published app uses the generated C parser; this one differs from it only after corruption,
-/// where it finds the frames that the other one swallows.
+/// The buffer and its receiver.
 #[derive(Debug)]
 pub struct Uart {
-    buffer: Vec<u8>,
-    parser: Parser,
-    calls_left: u32,
+    /// Bytes that the buffer holds; `None`: as many as come.
+    capacity: Option<usize>,
+    buffer: VecDeque<NumberedByte>,
+    receiver: Receiver,
+    ledger: Ledger,
+    arrived: u64,
     overflowed_bytes: u64,
-    unused_messages: u32,
 }
 
 impl Uart {
-    /// An empty buffer that is not being read.
-    pub fn new() -> Self {
+    /// An empty buffer.
+    pub fn new(quirks: &Quirks) -> Self {
         Self {
-            buffer: Vec::with_capacity(BUFFER_BYTES),
-            parser: Parser::new(),
-            calls_left: 0,
+            capacity: quirks.short_buffer.then_some(BUFFER_BYTES),
+            buffer: VecDeque::with_capacity(BUFFER_BYTES),
+            receiver: if quirks.published_receiver {
+                Receiver::Published(Published::default())
+            } else {
+                Receiver::Strict(Strict::default())
+            },
+            ledger: Ledger::default(),
+            arrived: 0,
             overflowed_bytes: 0,
-            unused_messages: 0,
         }
     }
 
     /// Bytes arrive. What does not fit is lost: the newest.
-    pub fn arrive(&mut self, bytes: &[u8]) {
-        let room = BUFFER_BYTES - self.buffer.len();
-        let (kept, lost) = bytes.split_at(bytes.len().min(room));
-        self.buffer.extend_from_slice(kept);
-        self.overflowed_bytes += lost.len() as u64;
-    }
-
-    /// The app begins to read: for the next ten receive calls.
-    pub fn open_window(&mut self) {
-        self.calls_left = CALLS;
-    }
-
-    /// The app stops reading.
-    pub fn close_window(&mut self) {
-        self.calls_left = 0;
-    }
-
-    /// Whether the app is reading.
-    pub fn window_is_open(&self) -> bool {
-        self.calls_left > 0
-    }
-
-    /// One receive call: reads until a message is complete or the buffer is empty; does nothing
-    /// outside the window.
-    ///
-    /// The app handles a message at the beginning of the next call, so what the last call of a
-    /// window receives is never used: nine messages a cycle at most.
-    pub fn receive(&mut self) -> Option<Message> {
-        self.calls_left = self.calls_left.checked_sub(1)?;
-        let message = self.read()?;
-        if self.calls_left == 0 {
-            self.unused_messages += 1;
-            return None;
+    pub fn arrive(&mut self, now_ms: u64, bytes: &[u8]) {
+        for byte in bytes {
+            let byte = (self.arrived, *byte);
+            let has_room = self.capacity.is_none_or(|room| self.buffer.len() < room);
+            if has_room {
+                self.buffer.push_back(byte);
+            } else {
+                self.overflowed_bytes += 1;
+            }
+            self.arrived += 1;
+            self.ledger.arrive(now_ms, byte, has_room);
         }
-        Some(message)
     }
 
-    fn read(&mut self) -> Option<Message> {
-        let mut unread = &self.buffer[..];
-        let frame = self.parser.next_frame(&mut unread);
-        let read = self.buffer.len() - unread.len();
-        self.buffer.drain(..read);
-        frame.map(|frame| frame.message)
+    /// Reads until a message is complete or the buffer is empty.
+    pub fn read(&mut self, now_ms: u64) -> Option<Heard> {
+        loop {
+            let found = self.receiver.next(&mut self.buffer);
+            let heard = match found {
+                Some(Found::Refused(span, refused)) => {
+                    self.ledger.refused(now_ms, span, refused);
+                    continue;
+                }
+                Some(Found::Message(span, message)) => {
+                    self.ledger.found(now_ms, span);
+                    let message = *message;
+                    Some(Heard { message, span })
+                }
+                None => None,
+            };
+            let next = self.buffer.front().map_or(self.arrived, |next| next.0);
+            let done = self.receiver.undecided().unwrap_or(next);
+            self.ledger.read_to(now_ms, done);
+            return heard;
+        }
+    }
+
+    /// A message that was read is not going to be used.
+    pub fn discard(&mut self, now_ms: u64, heard: &Heard, why: DropReason) {
+        self.ledger
+            .discarded(now_ms, heard.message.name(), heard.span, why);
+    }
+
+    /// Throws away what has not been read.
+    pub fn clear(&mut self, now_ms: u64) {
+        self.buffer.clear();
+        self.ledger.abandon(now_ms);
+    }
+
+    /// Nobody is going to read what is here.
+    pub fn abandon(&mut self, now_ms: u64) {
+        self.ledger.abandon(now_ms);
+    }
+
+    /// What has been lost since the last call.
+    pub fn take_dropped(&mut self) -> Vec<Dropped> {
+        self.ledger.take()
     }
 
     /// Bytes lost for want of room.
@@ -85,61 +115,8 @@ impl Uart {
         self.overflowed_bytes
     }
 
-    /// Messages that the last call of a window received.
-    pub fn unused_messages(&self) -> u32 {
-        self.unused_messages
-    }
-
-    /// What the parser has seen.
+    /// What the receiver has seen.
     pub fn counters(&self) -> Counters {
-        self.parser.counters()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use link::{Command, Message, State};
-
-    use super::Uart;
-
-    fn received_in_a_window(uart: &mut Uart) -> usize {
-        uart.open_window();
-        let mut count = 0;
-        while uart.window_is_open() {
-            count += usize::from(uart.receive().is_some());
-        }
-        count
-    }
-
-    #[test]
-    fn a_full_buffer_keeps_the_oldest_200_bytes() {
-        let state = Message::State(State::default()).encode();
-        let mut uart = Uart::new();
-        for _ in 0..8 {
-            uart.arrive(&state);
-        }
-        assert_eq!(uart.overflowed_bytes(), 8 * 28 - 200);
-        let count = received_in_a_window(&mut uart);
-        assert_eq!(count, 7, "seven of 28 bytes fit whole");
-    }
-
-    #[test]
-    fn nothing_is_read_outside_the_window() {
-        let mut uart = Uart::new();
-        uart.arrive(&Message::State(State::default()).encode());
-        assert_eq!(uart.receive(), None);
-        assert_eq!(received_in_a_window(&mut uart), 1);
-    }
-
-    #[test]
-    fn of_ten_messages_in_a_window_nine_are_used_and_later_ones_wait() {
-        let command = Message::Command(Command::default()).encode();
-        let mut uart = Uart::new();
-        for _ in 0..12 {
-            uart.arrive(&command);
-        }
-        assert_eq!(received_in_a_window(&mut uart), 9);
-        assert_eq!(uart.unused_messages(), 1);
-        assert_eq!(received_in_a_window(&mut uart), 2);
+        self.receiver.counters()
     }
 }
