@@ -22,4 +22,5 @@ pub mod recorder;
 pub mod report;
 pub mod scenario;
 pub mod sensing;
+pub mod steps;
 pub mod summary;

@@ -11,6 +11,7 @@ mod ekf_replay;
 mod fly;
 mod homing_check;
 mod link_check;
+mod steps;
 
 use std::process::ExitCode;
 
@@ -53,6 +54,8 @@ enum Verb {
     Drift(drift::Arguments),
     /// Holds the filter against a recording of the firmware's own
     EkfReplay(ekf_replay::Arguments),
+    /// Steps the set-point and looks at the answers
+    Steps(steps::Arguments),
 }
 
 /// Why a verb could not be carried out.
@@ -69,6 +72,7 @@ pub fn main() -> ExitCode {
         Verb::LinkCheck(arguments) => link_check::run(&arguments, &console),
         Verb::Drift(arguments) => drift::run(&arguments, &console),
         Verb::EkfReplay(arguments) => ekf_replay::run(&arguments, &console),
+        Verb::Steps(arguments) => steps::run(&arguments, &console),
     };
     match result {
         Ok(true) => ExitCode::SUCCESS,
