@@ -3,14 +3,11 @@
 mod closed_loop;
 mod corrections;
 mod drift;
+mod steps;
+mod wind;
 
 use autopilot::controller::SetPoint;
-use autopilot::vehicle::{Vehicle, VehicleParameters};
 use nalgebra::Vector3;
-
-fn standing() -> Vehicle {
-    Vehicle::standing_at(VehicleParameters::default(), Vector3::zeros(), 0.0)
-}
 
 fn hold(x: f64, y: f64, z: f64, yaw_rad: f64) -> SetPoint {
     SetPoint::Hold {
