@@ -77,6 +77,19 @@ impl Navigator {
         Ok(mode)
     }
 
+    /// Begins the way anew from wherever the drone is, in the same mode: after a time without poses.
+    /// The route stays as it is, and a drone that had finished it stays where it was.
+    pub fn resume(&mut self) {
+        if let Activity::Following(follower) = &mut self.activity {
+            follower.resume();
+        }
+    }
+
+    /// Whether the mode is one in which the camera leads.
+    pub const fn leads(&self) -> bool {
+        matches!(self.activity, Activity::Following(_))
+    }
+
     /// The mode.
     pub const fn mode(&self) -> Mode {
         self.mode

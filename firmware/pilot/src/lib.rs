@@ -10,9 +10,12 @@
 //! ```
 #![no_std]
 
+mod anchor;
+mod continuity;
 mod outbox;
 mod reply;
 
+use continuity::{Continuity, Verdict};
 use heapless::Vec;
 use link::{Message, State};
 use nalgebra::Point2;
@@ -20,7 +23,7 @@ use nav::navigator::EVENTS_PER_STEP;
 use nav::panorama::FRAME_BYTES;
 use nav::{
     CalibrationError, ExposureController, ExposureParameters, LensCalibration, Navigator,
-    PanoramaMap, Pose, Spectrum,
+    PanoramaMap, Pose, SetPoint, Spectrum, Step,
 };
 
 pub use nav::{Event, Exposure};
@@ -35,6 +38,14 @@ pub type Events = Vec<Event, EVENTS_PER_STEP>;
 /// Every how many STATE messages the camera says its mode without being asked: once a second. It is
 /// the only way in which an autopilot recovers that believes in another mode.
 const MODE_PERIOD_STATES: u8 = 10;
+
+/// Farther from the drone than this, metres, no target of a route can lie: the longest vector that is
+/// stored, and what homing and a correction add.
+pub const REACH_M: f32 = 12.7 * core::f32::consts::SQRT_2 + 1.0;
+
+fn is_out_of_reach(vector: &SetPoint) -> bool {
+    (vector.target - vector.start).norm() > REACH_M
+}
 
 /// What the pilot is made of.
 #[derive(Clone, Copy, Debug)]
@@ -84,8 +95,9 @@ pub struct Pilot {
     /// The newest view, aligned to north by the newest heading, until a STATE has used it: a camera
     /// that fails must not leave the navigator with an old view.
     view: Option<Spectrum>,
-    /// Radians, from the newest STATE.
+    /// Radians, from the newest STATE that was believed, in the route's coordinates.
     heading: f32,
+    continuity: Continuity,
     states_since_mode: u8,
 }
 
@@ -101,6 +113,7 @@ impl Pilot {
             navigator: Navigator::new(parameters.navigator),
             view: None,
             heading: 0.0,
+            continuity: Continuity::default(),
             states_since_mode: 0,
         })
     }
@@ -152,7 +165,11 @@ impl Pilot {
     /// The first argument, where there is one and it is not zero, is the way between two snapshots
     /// along odometry from now on, in decimetres. The published client sends no arguments.
     fn on_command(&mut self, command: &link::Command, outbox: &mut Outbox) {
+        let before = self.navigator.mode_byte();
         let understood = self.navigator.command(command.command).is_ok();
+        if self.navigator.mode_byte() != before {
+            self.continuity.look_again();
+        }
         if let (true, Some(decimetres)) = (understood, command.args.first()) {
             self.navigator
                 .set_snapshot_spacing(f32::from(*decimetres) / 10.0);
@@ -165,16 +182,64 @@ impl Pilot {
             return Events::from_iter([Event::InvalidPose]);
         };
         let pose = Pose::new(Point2::new(pose.x, pose.y), pose.yaw);
-        self.heading = pose.heading;
-        let step = self
-            .navigator
-            .step(now_ms, &pose, self.view.take().as_ref());
+        let step = self.answer(now_ms, &pose);
         reply::push(&step, outbox);
         self.states_since_mode += 1;
         if self.states_since_mode >= MODE_PERIOD_STATES {
             self.say_mode(outbox);
         }
         step.events
+    }
+
+    /// What to do about the autopilot's pose, in the autopilot's coordinates.
+    fn answer(&mut self, now_ms: u32, pose: &Pose) -> Step {
+        if self.navigator.route().is_empty() && !self.navigator.leads() {
+            // Whatever origin the autopilot has now is the next route's.
+            self.continuity = Continuity::default();
+        }
+        match self.continuity.judge(now_ms, pose, self.view.as_ref()) {
+            Verdict::GoesOn(here) => self.go_on(now_ms, pose, &here),
+            Verdict::NewOrigin(here) => {
+                self.navigator.resume();
+                let mut step = self.go_on(now_ms, pose, &here);
+                // First of at most five.
+                let _ = step.events.insert(0, Event::NewOrigin);
+                step
+            }
+            Verdict::Doubtful { news } => Step {
+                events: news.then_some(Event::PoseDoubtful).into_iter().collect(),
+                ..Step::default()
+            },
+            Verdict::Lost { stay, news } => self.stay(&stay, pose, news),
+        }
+    }
+
+    /// A step of the navigator `here` on the route, where the autopilot's pose is `pose`.
+    fn go_on(&mut self, now_ms: u32, pose: &Pose, here: &Pose) -> Step {
+        self.heading = here.heading;
+        let view = self.view.take();
+        let step = self.navigator.step(now_ms, here, view.as_ref());
+        self.continuity.remember(now_ms, here, view, &step);
+        if step.vector.is_some_and(|vector| is_out_of_reach(&vector)) {
+            self.continuity.lose(pose);
+            return self.stay(&pose.position, pose, true);
+        }
+        self.continuity.to_autopilot(step)
+    }
+
+    /// A safe stop: nothing is recorded, and where the camera leads it leads nowhere.
+    fn stay(&self, stay: &Point2<f32>, pose: &Pose, news: bool) -> Step {
+        let vector = SetPoint {
+            source: nav::Source::Odometry,
+            target: *stay,
+            start: pose.position,
+            delta_yaw: 0.0,
+        };
+        Step {
+            vector: self.navigator.leads().then_some(vector),
+            events: news.then_some(Event::Lost).into_iter().collect(),
+            ..Step::default()
+        }
     }
 
     fn say_mode(&mut self, outbox: &mut Outbox) {

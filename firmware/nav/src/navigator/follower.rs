@@ -34,8 +34,11 @@ enum Phase {
         since_ms: u32,
         correction: Correction,
     },
-    /// Nothing left to do.
-    Holding { at: Point2<f32> },
+    /// Nothing left to do. `told_ms`: when the autopilot was told that the route is finished.
+    Holding {
+        at: Point2<f32>,
+        told_ms: Option<u32>,
+    },
 }
 
 /// What a step has at hand.
@@ -56,6 +59,12 @@ impl Follower {
         }
     }
 
+    pub(super) fn resume(&mut self) {
+        if !matches!(self.phase, Phase::Holding { .. }) {
+            self.phase = Phase::Starting;
+        }
+    }
+
     pub(super) fn step(&mut self, context: &mut Context, step: &mut Step) {
         match self.phase {
             Phase::Starting => self.start(context, step),
@@ -67,6 +76,13 @@ impl Follower {
                 if has_passed(since_ms, context.now_ms, settling_ms) {
                     self.go_on(correction.to.position, context, step);
                 }
+            }
+            Phase::Holding {
+                at,
+                told_ms: Some(told_ms),
+            } if has_passed(told_ms, context.now_ms, context.parameters.home_period_ms) => {
+                step.map = Some(map_entry(context.route, None));
+                self.hold_at_home(at, context);
             }
             Phase::Leg | Phase::Homing { .. } | Phase::Holding { .. } => {}
         }
@@ -80,7 +96,10 @@ impl Follower {
         let here = context.pose.position;
         if context.route.is_empty() || (self.stays && context.route.snapshots().is_empty()) {
             step.report(Event::RouteEmpty);
-            self.phase = Phase::Holding { at: here };
+            self.phase = Phase::Holding {
+                at: here,
+                told_ms: None,
+            };
         } else if self.stays {
             // It may be far away, and the camera leads; odometry is what is left in the dark.
             let fallback = arrival::recorded_position(context.route).unwrap_or(here);
@@ -96,7 +115,7 @@ impl Follower {
             let run = HomingRun::new(context.now_ms, at, at);
             self.phase = Phase::Homing { run, done: true };
         } else if context.route.is_empty() {
-            self.finish(at, step);
+            self.finish(at, context, step);
         } else {
             self.start_next(at, context, step);
         }
@@ -133,7 +152,7 @@ impl Follower {
                 return self.start_homing(tip, tip, context, step);
             }
             if context.route.pop_vector().is_none() {
-                return self.finish(tip, step);
+                return self.finish(tip, context, step);
             }
             popped = true;
         }
@@ -161,9 +180,14 @@ impl Follower {
         step.map = Some(entry);
     }
 
-    fn finish(&mut self, at: Point2<f32>, step: &mut Step) {
+    fn finish(&mut self, at: Point2<f32>, context: &Context, step: &mut Step) {
         step.report(Event::RouteFinished);
-        self.phase = Phase::Holding { at };
+        self.hold_at_home(at, context);
+    }
+
+    fn hold_at_home(&mut self, at: Point2<f32>, context: &Context) {
+        let told_ms = Some(context.now_ms);
+        self.phase = Phase::Holding { at, told_ms };
     }
 
     fn set_point(&mut self, context: &mut Context, step: &mut Step) -> SetPoint {
@@ -173,7 +197,7 @@ impl Follower {
                 step.correction = Some(correction);
                 correction.to.position
             }
-            Phase::Holding { at } => at,
+            Phase::Holding { at, .. } => at,
             Phase::Leg | Phase::Starting => context.route.tip(),
         };
         by_odometry(target, context.pose)

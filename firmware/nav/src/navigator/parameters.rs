@@ -40,6 +40,8 @@ pub struct Parameters {
     pub settling_time_ms: u32,
     /// Least time between two realignments.
     pub realignment_interval_ms: u32,
+    /// At home: time between two MAP messages that say so.
+    pub home_period_ms: u32,
     /// Fourier homing.
     pub homing: HomingParameters,
 }
@@ -64,6 +66,8 @@ impl Parameters {
     /// - The 10-frame rule is off, as in the paper's final flights.
     /// - The app applies a correction once it arrives and the filter within two periods: 300 ms. Two
     ///   realignments within a second could contradict each other.
+    /// - Each MAP goes out once, and a broken one is lost. That the drone is home, the autopilot must
+    ///   hear some time: once a second.
     pub const DEFAULT: Self = Self {
         snapshot_spacing_m: 2.0,
         sequence_spacing_m: 0.25,
@@ -80,6 +84,7 @@ impl Parameters {
         frames_without_minimum: 0,
         settling_time_ms: 300,
         realignment_interval_ms: 1_000,
+        home_period_ms: 1_000,
         homing: HomingParameters::DEFAULT,
     };
 }

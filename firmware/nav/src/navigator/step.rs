@@ -137,4 +137,11 @@ pub enum Event {
     RouteFinished,
     /// The pose is not plausible: the step was skipped.
     InvalidPose,
+    /// The drone cannot be where the pose says: it is not answered unless the next one agrees.
+    PoseDoubtful,
+    /// The autopilot counts from a new origin, and the view is that of the last known place: the
+    /// route goes on from there.
+    NewOrigin,
+    /// Nobody knows where the drone is on the route: it stays where it is, and nothing is recorded.
+    Lost,
 }
