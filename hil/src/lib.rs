@@ -15,6 +15,7 @@ pub mod folder;
 pub mod homing_check;
 pub mod image;
 pub mod link_check;
+pub mod live;
 pub mod metrics;
 pub mod parallel;
 pub mod record;

@@ -8,6 +8,7 @@ use anstyle::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressStyle};
 
 const VERB: Style = AnsiColor::Green.on_default().bold();
+const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 const ERROR: Style = AnsiColor::Red.on_default().bold();
 
 /// Status lines on stderr, in cargo's manner.
@@ -28,6 +29,11 @@ impl Console {
     pub fn status(&self, verb: &str, text: &str) {
         // A closed stderr must not end a flight.
         let _ = writeln!(anstream::stderr(), "{VERB}{verb:>12}{VERB:#} {text}");
+    }
+
+    /// Something that is not as it should be and ends nothing, for people.
+    pub fn warning(&self, text: &str) {
+        let _ = writeln!(anstream::stderr(), "{WARNING}warning{WARNING:#}: {text}");
     }
 
     /// An error, for people.

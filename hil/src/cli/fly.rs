@@ -138,14 +138,14 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
 }
 
 /// A firmware image and where it came from.
-struct Image {
+pub(super) struct Image {
     elf: PathBuf,
-    bytes: Vec<u8>,
+    pub(super) bytes: Vec<u8>,
 }
 
 impl Image {
     /// The image that was given, or else the one of this checkout.
-    fn get(given: Option<PathBuf>, console: &Console) -> Result<Self, Failure> {
+    pub(super) fn get(given: Option<PathBuf>, console: &Console) -> Result<Self, Failure> {
         let elf = match given {
             Some(elf) => elf,
             None => image::build(&|line| console.status("Firmware", line))?,

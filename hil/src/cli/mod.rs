@@ -3,14 +3,17 @@
 //! 0: what was asked for is true. 1: it is not (a flight that does not come home, a record that
 //! does not hold). 2: it could not be done (wrong options, no compiler, a chip that stopped).
 
+mod autopilot;
 mod campaign;
 mod conditions;
 mod console;
 mod drift;
 mod ekf_replay;
+mod emulate;
 mod fly;
 mod homing_check;
 mod link_check;
+mod live;
 mod steps;
 
 use std::process::ExitCode;
@@ -42,6 +45,10 @@ struct Cli {
 enum Verb {
     /// Flies a route out and back and writes a report
     Fly(fly::Arguments),
+    /// Offers the emulated board to a real autopilot, in real time
+    Emulate(emulate::Arguments),
+    /// Offers the emulated autopilot to a real board, in real time
+    Autopilot(autopilot::Arguments),
     /// Flies many seeds and prints their statistics
     Campaign(campaign::Arguments),
     /// Builds the firmware with whatever toolchain there is, and says which
@@ -66,6 +73,8 @@ pub fn main() -> ExitCode {
     let console = Console::new();
     let result = match Cli::parse().verb {
         Verb::Fly(arguments) => fly::run(&arguments, &console),
+        Verb::Emulate(arguments) => emulate::run(&arguments, &console),
+        Verb::Autopilot(arguments) => autopilot::run(&arguments, &console),
         Verb::Campaign(arguments) => campaign::run(&arguments, &console),
         Verb::Build => build(&console),
         Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),

@@ -115,6 +115,11 @@ impl Aircraft {
         camera_pose(&truth.position_m, &truth.attitude)
     }
 
+    /// Where the drone really is, and how it moves.
+    pub fn truth(&self) -> &Truth {
+        self.vehicle.truth()
+    }
+
     /// What the app is doing.
     pub fn phase(&self) -> app::Phase {
         self.app.phase()

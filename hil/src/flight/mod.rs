@@ -4,7 +4,7 @@
 
 pub(crate) mod aircraft;
 pub(crate) mod sum_up;
-mod wire;
+pub(crate) mod wire;
 
 use std::fmt;
 use std::time::Instant;
@@ -140,12 +140,12 @@ fn fly(
         board.look_from(aircraft.camera_pose());
         let mut to_board = aircraft.tick(now_ms, &from_board);
         record(now_ms, &mut aircraft, &mut recorder);
-        wire.to_camera(&mut to_board);
+        wire.carry_to_camera(&mut to_board);
         board.transmit(&to_board);
         board.advance()?;
         from_board.clear();
         board.receive(&mut from_board);
-        wire.to_autopilot(&mut from_board);
+        wire.carry_to_autopilot(&mut from_board);
         board.drain_log(&mut log);
         recorder.log(now_ms, log.drain(..));
         if now_ms.is_multiple_of(PROGRESS_PERIOD_MS) {

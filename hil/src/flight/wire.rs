@@ -33,12 +33,12 @@ impl Wire {
     }
 
     /// What arrives at the camera of what the autopilot sends.
-    pub fn to_camera(&mut self, bytes: &mut [u8]) {
+    pub fn carry_to_camera(&mut self, bytes: &mut [u8]) {
         self.to_camera.carry(bytes);
     }
 
     /// What arrives at the autopilot of what the camera sends.
-    pub fn to_autopilot(&mut self, bytes: &mut [u8]) {
+    pub fn carry_to_autopilot(&mut self, bytes: &mut [u8]) {
         self.to_autopilot.carry(bytes);
     }
 
@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn an_undisturbed_wire_changes_nothing() {
         let mut bytes: Vec<u8> = (0..=255).collect();
-        Wire::new(0.0, 1).to_camera(&mut bytes);
+        Wire::new(0.0, 1).carry_to_camera(&mut bytes);
         assert!(bytes.iter().copied().eq(0..=255));
     }
 
@@ -104,7 +104,7 @@ mod tests {
     fn one_byte_in_a_hundred_arrives_as_another_and_each_other_is_as_likely() {
         const BYTES: usize = 1_000_000;
         let mut bytes = vec![0x99; BYTES];
-        Wire::new(0.01, 1).to_autopilot(&mut bytes);
+        Wire::new(0.01, 1).carry_to_autopilot(&mut bytes);
         let mut counts = [0_u32; 256];
         bytes
             .iter()
@@ -128,8 +128,17 @@ mod tests {
             direction(&mut Wire::new(0.1, seed), &mut bytes);
             bytes
         };
-        assert_eq!(carried(1, Wire::to_camera), carried(1, Wire::to_camera));
-        assert_ne!(carried(1, Wire::to_camera), carried(2, Wire::to_camera));
-        assert_ne!(carried(1, Wire::to_camera), carried(1, Wire::to_autopilot));
+        assert_eq!(
+            carried(1, Wire::carry_to_camera),
+            carried(1, Wire::carry_to_camera)
+        );
+        assert_ne!(
+            carried(1, Wire::carry_to_camera),
+            carried(2, Wire::carry_to_camera)
+        );
+        assert_ne!(
+            carried(1, Wire::carry_to_camera),
+            carried(1, Wire::carry_to_autopilot)
+        );
     }
 }

@@ -125,6 +125,9 @@ pub struct Spacing {
 }
 
 impl Spacing {
+    /// 2 m: what the paper's routes have where it says nothing else.
+    pub const DEFAULT: Self = Self { decimetres: 20 };
+
     /// From metres; `None` unless a multiple of 0.1 m within 0.2..=10 m.
     pub fn from_metres(metres: f64) -> Option<Self> {
         // Closer than 0.2 m there is no odometry between snapshots; beyond 10 m an odometry vector

@@ -1,0 +1,310 @@
+//! The emulated board against the clock: its link at a port, its camera wherever the pose source says.
+
+use std::time::Duration;
+
+use fake_sensors::camera::tcm8230::Tcm8230;
+use fake_sensors::world::World;
+use link::{Message, Parser};
+
+use crate::board::emulated::{Emulated, Firmware};
+use crate::board::{Board, BoardError, FirmwareLog};
+use crate::flight::wire::Wire;
+use crate::flight::{self, Flown, sum_up};
+use crate::record::{Recording, Reference, Side};
+use crate::recorder::{Glimpse, Recorder};
+use crate::scenario::{Conditions, Route, Scenario, Spacing};
+use crate::summary::{LiveFigures, Summary};
+
+use super::endpoint::PoseSource;
+use super::frames::Frames;
+use super::pace::Pacer;
+use super::port::Port;
+use super::pose::{Eyes, Seen};
+use super::scribe::{Notice, Scribe};
+use super::watch::{Turn, Watch};
+use super::{Common, LiveError};
+
+/// The route's name in the summary: the autopilot has it.
+const ROUTE: &str = "unknown";
+
+/// What is to be emulated.
+#[derive(Debug)]
+pub struct EmulateSetup<'s> {
+    /// Link, speed and end.
+    pub common: Common<'s>,
+    /// The image.
+    pub elf: &'s [u8],
+    /// What the camera looks at: a name that `fake_sensors::world` knows.
+    pub world: String,
+    /// Seed of world and camera noise.
+    pub seed: u64,
+    /// Where the camera's pose comes from.
+    pub pose: PoseSource,
+}
+
+/// Emulates the board until somebody asks to end, or the limit.
+///
+/// The flight is completed if the firmware has followed its newest route to the end. A route that is
+/// begun anew (CLEAR) takes the place of the one before; log and frames are those of all.
+///
+/// # Errors
+/// [`LiveError`] where it cannot begin, or the emulated chip stops.
+pub fn emulate(setup: &EmulateSetup, say: &dyn Fn(Notice)) -> Result<Flown, LiveError> {
+    let firmware = Firmware::parse(setup.elf)?;
+    let world = World::named(&setup.world, setup.seed)?;
+    let scenario = scenario(setup);
+    let camera = flight::camera(&scenario, &world, Tcm8230::default());
+    let blank = Recording {
+        route: Vec::new(),
+        ..flight::blank(&world, &scenario.route.waypoints())
+    };
+    let mut session = Session {
+        board: Emulated::boot(&firmware, camera)?,
+        link: Port::open(&setup.common.link, setup.common.baud)?,
+        eyes: Eyes::open(setup.pose)?,
+        scribe: Scribe::new(blank.clone(), say),
+        watch: Watch::default(),
+        heard: Parser::new(),
+        spoken: Frames::default(),
+        wire: Wire::new(0.0, setup.seed),
+        stood_on_belief: false,
+        now_ms: 0,
+        blank,
+    };
+    session.announce();
+    let mut pacer = Pacer::new(setup.common.speed);
+    while !setup.common.over(session.now_ms) {
+        pacer.wait();
+        session.step()?;
+    }
+    session.finish(scenario, &firmware, setup, &pacer)
+}
+
+/// What is known of the flight beforehand; the route stands for one that the autopilot has.
+fn scenario(setup: &EmulateSetup) -> Scenario {
+    Scenario {
+        route: Route::default(),
+        world: setup.world.clone(),
+        seed: setup.seed,
+        spacing: Spacing::DEFAULT,
+        homing: Default::default(),
+        conditions: Conditions::default(),
+    }
+}
+
+/// A board with all that is around it.
+struct Session<'s, 'f> {
+    board: Emulated<'f>,
+    link: Port,
+    eyes: Eyes,
+    scribe: Scribe<'s>,
+    watch: Watch,
+    /// Reads along what the firmware receives.
+    heard: Parser,
+    /// What the firmware sends.
+    spoken: Frames,
+    /// Counts; what breaks on the way breaks at the other end.
+    wire: Wire,
+    /// Whether the camera ever was where the drone believed to be.
+    stood_on_belief: bool,
+    now_ms: u64,
+    /// A recording in which nothing has happened.
+    blank: Recording,
+}
+
+impl Session<'_, '_> {
+    fn announce(&mut self) {
+        let (link, pose) = (self.link.place().to_owned(), self.eyes.place());
+        self.scribe.tell(0, "Link", link);
+        self.scribe.tell(0, "Pose", pose);
+    }
+
+    /// One millisecond.
+    fn step(&mut self) -> Result<(), BoardError> {
+        let mut received = Vec::new();
+        for news in self.link.poll(&mut received) {
+            self.scribe.news(self.now_ms, "Link", news);
+        }
+        for seen in self.eyes.poll(self.now_ms) {
+            self.saw(seen);
+        }
+        self.wire.carry_to_camera(&mut received);
+        self.hear(&received);
+        self.board.look_from(self.eyes.camera(self.now_ms));
+        self.board.transmit(&received);
+        self.board.advance()?;
+        self.answer();
+        self.log();
+        self.note();
+        self.now_ms += 1;
+        Ok(())
+    }
+
+    fn saw(&mut self, seen: Seen) {
+        match seen {
+            Seen::News(news) => self.scribe.news(self.now_ms, "Pose", news),
+            Seen::Bad(error) => self.scribe.bad_line(self.now_ms, &error),
+            Seen::Switched(source) => {
+                self.scribe
+                    .tell(self.now_ms, "Pose", format!("the camera follows {source}"));
+            }
+        }
+    }
+
+    /// Understands what the autopilot says; what is broken, the firmware will name.
+    fn hear(&mut self, mut bytes: &[u8]) {
+        while let Some(frame) = self.heard.next_frame(&mut bytes) {
+            match &frame.message {
+                Message::State(state) => {
+                    if let Ok(pose) = state.pose() {
+                        self.watch.on_state(pose);
+                        if let Some(seen) = self.eyes.state(self.now_ms, pose) {
+                            self.saw(seen);
+                        }
+                    }
+                }
+                Message::Command(command) => self.watch.on_command(command),
+                _ => {}
+            }
+        }
+    }
+
+    /// Hands over what the firmware says.
+    fn answer(&mut self) {
+        let mut bytes = Vec::new();
+        self.board.receive(&mut bytes);
+        self.wire.carry_to_autopilot(&mut bytes);
+        for piece in self.spoken.push(&bytes) {
+            if let Err(why) = self.link.send(&piece.bytes) {
+                self.scribe
+                    .unsent(self.now_ms, Side::Autopilot, piece.name(), why);
+            }
+            if let Some(message) = &piece.message {
+                self.said(message);
+            }
+        }
+    }
+
+    fn said(&mut self, message: &Message) {
+        match self.watch.on_answer(message) {
+            Some(Turn::NewRoute) => self.begin_anew(),
+            Some(Turn::Mode(mode)) => {
+                let text = format!("the firmware is in mode 0x{mode:02x}");
+                self.scribe.recorder.note(self.now_ms, "info", text);
+            }
+            None => {}
+        }
+        let glimpse = self.glimpse();
+        self.scribe.recorder.message(self.now_ms, message, &glimpse);
+    }
+
+    /// The route of before is forgotten, as the firmware has.
+    fn begin_anew(&mut self) {
+        let recorder =
+            std::mem::replace(&mut self.scribe.recorder, Recorder::new(self.blank.clone()));
+        let before = recorder.finish();
+        let text = format!(
+            "a new route; the one before had {} snapshots and {} corrections",
+            before.snapshots.len(),
+            before.corrections.len()
+        );
+        self.scribe.recorder = Recorder::new(Recording {
+            frames: before.frames,
+            link_drops: before.link_drops,
+            log: before.log,
+            ..self.blank.clone()
+        });
+        self.scribe.tell(self.now_ms, "Route", text);
+    }
+
+    fn log(&mut self) {
+        let mut records = Vec::new();
+        self.board.drain_log(&mut records);
+        for record in &records {
+            if let FirmwareLog::Line { text, .. } = record {
+                self.watch.on_log(text);
+            }
+        }
+        self.scribe.recorder.log(self.now_ms, records.into_iter());
+    }
+
+    fn note(&mut self) {
+        let airborne = self.eyes.airborne(self.now_ms);
+        self.stood_on_belief |= airborne && self.eyes.is_belief();
+        let recorder = &mut self.scribe.recorder;
+        recorder.phase(self.now_ms, self.watch.phase(airborne));
+        let glimpse = self.glimpse();
+        self.scribe.recorder.track(self.now_ms, &glimpse);
+    }
+
+    fn glimpse(&self) -> Glimpse {
+        let pose = self.eyes.pose(self.now_ms);
+        Glimpse {
+            truth: pose.planar(),
+            estimate: self.watch.estimate(),
+            uncorrected: self.watch.uncorrected(),
+            height_m: pose.z,
+        }
+    }
+
+    fn finish(
+        mut self,
+        scenario: Scenario,
+        firmware: &Firmware,
+        setup: &EmulateSetup,
+        pacer: &Pacer,
+    ) -> Result<Flown, LiveError> {
+        let figures = self.board.finish()?;
+        self.log();
+        let scenario = Scenario {
+            homing: self.watch.homing(),
+            spacing: self.watch.spacing().unwrap_or(scenario.spacing),
+            ..scenario
+        };
+        let live = self.live_figures(setup, pacer);
+        self.scribe.report_pace(self.now_ms, &live.pace);
+        let mut recording = self.scribe.recorder.finish();
+        if self.stood_on_belief || live.poses == 0 {
+            recording.reference = Reference::Estimate;
+        }
+        let end = sum_up::End {
+            completed: self.watch.finished(),
+            outcome: outcome(&self.watch),
+            flight_s: Duration::from_millis(self.now_ms).as_secs_f64(),
+            figures,
+            backend: self.board.name(),
+            firmware: Some(firmware),
+            link: self.wire.figures(&recording),
+            wall: pacer.elapsed(),
+        };
+        let summary = Summary {
+            route: ROUTE.to_owned(),
+            live: Some(live),
+            ..sum_up::summary(&scenario, &recording, end)
+        };
+        Ok(Flown { summary, recording })
+    }
+
+    fn live_figures(&self, setup: &EmulateSetup, pacer: &Pacer) -> LiveFigures {
+        let (pose_peers, poses, bad_poses) = self.eyes.counts();
+        LiveFigures {
+            pace: pacer.figures(),
+            link: setup.common.link.to_string(),
+            link_peers: self.link.peers(),
+            pose: setup.pose.to_string(),
+            pose_peers,
+            poses,
+            bad_poses,
+        }
+    }
+}
+
+fn outcome(watch: &Watch) -> &'static str {
+    use autopilot::app::Phase;
+    match watch.phase(true) {
+        _ if watch.finished() => "the firmware followed the route to its end",
+        Phase::Following => "ended before the route was followed to its end",
+        Phase::Recording => "ended while the route was recorded",
+        _ => "no route was followed",
+    }
+}

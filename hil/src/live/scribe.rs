@@ -1,0 +1,107 @@
+//! Tells people what happens while it happens, and writes it down.
+
+use crate::record::{Recording, Side};
+use crate::recorder::Recorder;
+use crate::summary::PaceFigures;
+
+use super::pace::LATE;
+use super::port::{News, Unsent};
+
+/// Lines about broken poses that are told and written down; the others are only counted.
+const TOLD_BAD_LINES: u64 = 20;
+
+/// Something for people, now.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// What it concerns, and what happened.
+    Status(&'static str, String),
+    /// Something that is not as it should be.
+    Warning(String),
+}
+
+/// A recorder with a voice.
+pub struct Scribe<'s> {
+    /// What is written down.
+    pub recorder: Recorder,
+    say: &'s dyn Fn(Notice),
+    bad_lines: u64,
+}
+
+impl<'s> Scribe<'s> {
+    /// Before the flight; `recording` holds what is known beforehand.
+    pub fn new(recording: Recording, say: &'s dyn Fn(Notice)) -> Self {
+        Self {
+            recorder: Recorder::new(recording),
+            say,
+            bad_lines: 0,
+        }
+    }
+
+    /// Something that the recorder has of itself.
+    pub fn say(&self, verb: &'static str, text: String) {
+        (self.say)(Notice::Status(verb, text));
+    }
+
+    /// What goes as it should.
+    pub fn tell(&mut self, now_ms: u64, verb: &'static str, text: String) {
+        self.recorder
+            .note(now_ms, "info", format!("{}: {text}", verb.to_lowercase()));
+        self.say(verb, text);
+    }
+
+    /// What does not.
+    pub fn warn(&mut self, now_ms: u64, text: String) {
+        self.recorder.note(now_ms, "warn", text.clone());
+        (self.say)(Notice::Warning(text));
+    }
+
+    /// What happened at a port.
+    pub fn news(&mut self, now_ms: u64, verb: &'static str, news: News) {
+        match news {
+            News::Came(peer) => self.tell(now_ms, verb, format!("connected: {peer}")),
+            News::Gone(peer) => self.warn(
+                now_ms,
+                format!("{}: peer lost: {peer}", verb.to_lowercase()),
+            ),
+            News::Note(text) => self.tell(now_ms, verb, text),
+        }
+    }
+
+    /// A line that is no pose.
+    pub fn bad_line(&mut self, now_ms: u64, error: &dyn std::fmt::Display) {
+        self.bad_lines += 1;
+        if self.bad_lines <= TOLD_BAD_LINES {
+            self.warn(
+                now_ms,
+                format!("not a pose: {error}; the last good one holds"),
+            );
+        }
+    }
+
+    /// A frame could not be handed over; `to` is who did not get it.
+    pub fn unsent(&mut self, now_ms: u64, to: Side, message: &str, why: Unsent) {
+        self.recorder.link_drop(
+            now_ms,
+            to,
+            message.to_owned(),
+            format!("not handed over: {why}"),
+        );
+    }
+}
+
+impl Scribe<'_> {
+    /// How well the flight kept step with the clock.
+    pub fn report_pace(&mut self, now_ms: u64, pace: &PaceFigures) {
+        let text = format!(
+            "{:.2} % of the steps began more than {} ms late, the latest {:.1} ms",
+            100.0 * pace.late_share,
+            LATE.as_millis(),
+            pace.largest_lateness_ms
+        );
+        if pace.late_share > 0.0 {
+            self.warn(now_ms, text);
+        } else {
+            self.recorder.note(now_ms, "info", text);
+        }
+    }
+}
