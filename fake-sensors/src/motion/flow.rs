@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::model::FlowModel;
+use super::model::{FlowModel, StatedSd};
 use super::{MotionTruth, stream};
 use crate::random::Normal;
 
@@ -15,8 +15,6 @@ const MAX_COUNTS: f64 = 100.0;
 const MIN_HEIGHT_M: f64 = 0.03;
 /// The driver sleeps this long between readings, ms; the reading itself takes up to one more.
 const SLEEP_MS: u32 = 10;
-/// The driver's standard deviation of a count.
-const STATED_SD_COUNTS: f32 = 2.0;
 /// Each tick is one millisecond.
 const TICK_S: f64 = 0.001;
 
@@ -37,6 +35,7 @@ pub struct FlowDeck {
     noise: Normal,
     noise_counts: f64,
     counts_per_rad: f64,
+    stated_sd: StatedSd,
     /// Cosine and sine of the deck's rotation about the body's z axis.
     mounting: (f64, f64),
     /// Counts not reported yet: whole ones of this interval, and what truncation left of earlier ones.
@@ -55,6 +54,7 @@ impl FlowDeck {
             counts_per_rad: COUNTS_PER_RAD * (1.0 + noise.sample() * model.scale_sd),
             noise,
             noise_counts: model.noise_counts,
+            stated_sd: model.stated_sd,
             mounting: (cos, sin),
             pending: Vector2::zeros(),
             elapsed_ms: 0,
@@ -77,7 +77,7 @@ impl FlowDeck {
         (in_sight && counts.amax() < MAX_COUNTS).then(|| FlowReading {
             counts: [counts.x as i16, counts.y as i16],
             dt_s,
-            sd_counts: STATED_SD_COUNTS,
+            sd_counts: self.stated_sd.counts(),
         })
     }
 

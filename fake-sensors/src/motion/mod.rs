@@ -15,7 +15,7 @@ mod tests;
 
 pub use flow::{FlowDeck, FlowReading};
 pub use imu::{Imu, ImuReading};
-pub use model::{FlowModel, ImuModel, RangeModel, SensorModel};
+pub use model::{FlowModel, ImuModel, RangeModel, SensorModel, StatedSd};
 pub use range::{RangeReading, RangeSensor};
 
 use nalgebra::{UnitQuaternion, Vector3};

@@ -31,6 +31,7 @@ impl SensorModel {
                 noise_counts: 0.0,
                 scale_sd: 0.0,
                 mounting_yaw_sd_rad: 0.0,
+                stated_sd: StatedSd::Fixed,
             },
             range: RangeModel {
                 noise_m: 0.0,
@@ -85,6 +86,30 @@ pub struct FlowModel {
     pub scale_sd: f64,
     /// Standard deviation of the deck's rotation about the body's z axis, rad.
     pub mounting_yaw_sd_rad: f64,
+    /// What the driver tells the filter about the noise.
+    pub stated_sd: StatedSd,
+}
+
+/// How the flow deck's driver comes by the standard deviation it states (`flowdeck_v1v2`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StatedSd {
+    /// The same for every reading: the firmware's default.
+    Fixed,
+    /// From the shutter time: the less light, the noisier (parameter `motion.adaptive`).
+    Adaptive {
+        /// Shutter register of the PMW3901, cycles of its clock.
+        shutter: u16,
+    },
+}
+
+impl StatedSd {
+    /// The standard deviation, counts.
+    pub fn counts(self) -> f32 {
+        match self {
+            Self::Fixed => 2.0,
+            Self::Adaptive { shutter } => (0.000_798_4 * f32::from(shutter) + 0.433_5).max(0.1),
+        }
+    }
 }
 
 impl Default for FlowModel {
@@ -96,6 +121,7 @@ impl Default for FlowModel {
             scale_sd: 0.05,
             // Assumed: one degree.
             mounting_yaw_sd_rad: 1.0 * core::f64::consts::PI / 180.0,
+            stated_sd: StatedSd::Fixed,
         }
     }
 }

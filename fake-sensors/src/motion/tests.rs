@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{
     FlowDeck, FlowModel, Imu, ImuModel, MotionReadings, MotionSensors, MotionTruth, RangeModel,
-    RangeSensor, SensorModel,
+    RangeSensor, SensorModel, StatedSd,
 };
 
 /// Level, half a metre up, at rest.
@@ -120,19 +120,51 @@ fn flow_comes_every_ten_to_eleven_milliseconds() {
 }
 
 #[test]
-fn flow_is_dropped_when_too_fast_or_too_low() {
-    let fast = MotionTruth {
-        velocity_m_s: Vector3::new(12.0, 0.0, 0.0),
+fn flow_is_dropped_from_a_hundred_counts_on_either_axis_or_too_low() {
+    // 10 or 11 ms at 0.5 m: 9.0 m/s are 88 to 97 counts, 10.5 m/s 103 and more.
+    let moving = |x, y| MotionTruth {
+        velocity_m_s: Vector3::new(x, y, 0.0),
         ..hover()
     };
     let low = MotionTruth {
         position_m: Vector3::new(0.0, 0.0, 0.02),
         ..hover()
     };
-    for truth in [fast, low] {
+    for (truth, dropped) in [
+        (moving(9.0, -9.0), false),
+        (moving(10.5, 0.0), true),
+        (moving(0.0, -10.5), true),
+        (low, true),
+    ] {
         let readings = run(&SensorModel::ideal(), 3, &truth, 200);
-        assert!(readings.iter().all(|r| r.flow.is_none()));
+        assert_eq!(
+            readings.iter().all(|r| r.flow.is_none()),
+            dropped,
+            "{truth:?}"
+        );
     }
+}
+
+#[test]
+fn the_driver_states_two_counts_or_a_deviation_that_grows_with_the_shutter() {
+    let stated = |stated_sd| {
+        let model = SensorModel {
+            flow: FlowModel {
+                stated_sd,
+                ..SensorModel::ideal().flow
+            },
+            ..SensorModel::ideal()
+        };
+        let readings = run(&model, 3, &hover(), 20);
+        readings
+            .iter()
+            .find_map(|r| r.flow)
+            .expect("a reading")
+            .sd_counts
+    };
+    assert_eq!(stated(StatedSd::Fixed), 2.0);
+    assert!((stated(StatedSd::Adaptive { shutter: 0 }) - 0.4335).abs() < 1e-6);
+    assert!((stated(StatedSd::Adaptive { shutter: 2000 }) - 2.0303).abs() < 1e-4);
 }
 
 #[test]

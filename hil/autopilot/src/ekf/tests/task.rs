@@ -219,3 +219,26 @@ fn a_reset_between_predictions_forgets_the_averages_and_shortens_the_next_step()
     let gained = ekf.estimate().velocity_m_s.x;
     assert!((gained - 0.1 * 9.81 * 0.006).abs() < 1e-6, "{gained}");
 }
+
+#[test]
+fn on_the_ground_an_accelerometer_offset_runs_away_for_want_of_flow() {
+    // 20 and 30 mg for 2 s: 0.71 m/s and 0.71 m off, although nothing moves. In flight the same offset does nothing.
+    let offset = ImuSample {
+        acc_g: Vector3::new(0.02, -0.03, 1.0),
+        ..AT_REST
+    };
+    let [on_the_ground, in_flight] = [false, true].map(|flying| {
+        let mut ekf = Ekf::new(Parameters::default(), 0);
+        for now_ms in 0..=2010 {
+            for measurement in offset.measurements() {
+                ekf.enqueue(measurement).expect("an empty queue");
+            }
+            ekf.tick(now_ms, flying);
+        }
+        ekf.estimate()
+    });
+    let acceleration = Vector3::new(0.02, -0.03, 0.0) * 9.81;
+    assert!((on_the_ground.velocity_m_s - acceleration * 2.0).norm() < 0.01);
+    assert!((on_the_ground.position_m - acceleration * 2.0).norm() < 0.01);
+    assert!(in_flight.velocity_m_s.norm() < 1e-5);
+}
