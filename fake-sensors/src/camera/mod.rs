@@ -66,7 +66,7 @@ impl PanoramicCamera {
 
     /// Takes frame `frame_number` from `pose` (of the optic, whose centre is the camera's).
     pub fn expose(&mut self, pose: &Pose, exposure: Exposure, frame_number: u32) -> &Frame {
-        let radiance = self.renderer.render(&self.world, pose);
+        let radiance = self.renderer.render(&self.world, pose, 0.0);
         self.sensor
             .form_image(radiance, exposure, frame_number, &mut self.frame);
         &self.frame

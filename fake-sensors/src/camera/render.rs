@@ -1,10 +1,12 @@
 //! From a pose to the light on each pixel: one precomputed ray per pixel of the annulus.
 
+use std::ops::Range;
+
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::lens::PanoramicLens;
 use super::{HEIGHT, WIDTH};
-use crate::world::World;
+use crate::world::{Aperture, World};
 
 /// The optic images this far beyond the ring's nominal edges, in pixels: users calibrate inside.
 const RING_MARGIN_PX: f32 = 1.5;
@@ -31,17 +33,23 @@ pub struct Pose {
 struct PixelRay {
     index: usize,
     direction: Vector3<f32>,
-    /// Geometric mean of the pixel's angular width and height, in radians.
-    width_rad: f32,
+    aperture: Aperture,
 }
 
 /// Renders the annulus of a panoramic lens.
 ///
-/// The world's textures are prefiltered to a pixel's footprint; a blur of about one pixel stands
-/// for the optic's poor focus, and smooths the edges that single rays leave jagged.
+/// The world's textures are prefiltered to a pixel's footprint, and solids cover as much of a pixel
+/// as they fill; a blur of about one pixel stands for the optic's poor focus, and smooths the edges
+/// between walls that single rays leave jagged.
+///
+/// A frame is [`render`](Self::render)ed whole, or, for a rolling shutter, row by row with
+/// [`render_rows`](Self::render_rows) and then [`finish`](Self::finish)ed.
 #[derive(Clone, Debug)]
 pub struct AnnulusRenderer {
+    /// Row by row.
     rays: Vec<PixelRay>,
+    /// The first ray of each row, and the number of rays.
+    row_starts: Vec<usize>,
     sharp: Vec<f32>,
     scratch: Vec<f32>,
     blurred: Vec<f32>,
@@ -53,7 +61,7 @@ impl AnnulusRenderer {
     pub fn new(lens: &PanoramicLens) -> Self {
         let inner = lens.inner_radius_px - RING_MARGIN_PX;
         let outer = lens.outer_radius_px + RING_MARGIN_PX;
-        let mut rays = Vec::new();
+        let mut rays: Vec<PixelRay> = Vec::new();
         let mut sharp = vec![0.0; WIDTH * HEIGHT];
         for (index, pixel) in sharp.iter_mut().enumerate() {
             let centre = pixel_centre(index);
@@ -68,7 +76,9 @@ impl AnnulusRenderer {
                 *pixel = HOLDER_RADIANCE;
             }
         }
+        let row_start = |row| rays.partition_point(|ray| ray.index < row * WIDTH);
         Self {
+            row_starts: (0..=HEIGHT).map(row_start).collect(),
             rays,
             scratch: sharp.clone(),
             blurred: sharp.clone(),
@@ -76,14 +86,30 @@ impl AnnulusRenderer {
         }
     }
 
-    /// Radiance on each pixel, row by row ([`WIDTH`] x [`HEIGHT`]); 1 is white paper in the
-    /// world's own light.
-    pub fn render(&mut self, world: &World, pose: &Pose) -> &[f32] {
-        let viewpoint = world.seen_from(pose.position_m);
-        let to_world = pose.attitude.to_rotation_matrix();
-        for ray in &self.rays {
-            self.sharp[ray.index] = viewpoint.radiance(to_world * ray.direction, ray.width_rad);
+    /// Radiance on each pixel, row by row ([`WIDTH`] x [`HEIGHT`]), all seen from `pose` at `time_s`;
+    /// 1 is white paper in the world's own light.
+    pub fn render(&mut self, world: &World, pose: &Pose, time_s: f64) -> &[f32] {
+        self.render_rows(0..HEIGHT, world, pose, time_s);
+        self.finish()
+    }
+
+    /// Renders `rows` (as far as the image has them) as seen from `pose` at `time_s` (seconds of
+    /// flight): with a rolling shutter, each row has its own.
+    pub fn render_rows(&mut self, rows: Range<usize>, world: &World, pose: &Pose, time_s: f64) {
+        let [first, last] = [rows.start, rows.end].map(|row| self.row_starts[row.min(HEIGHT)]);
+        if first >= last {
+            return;
         }
+        let viewpoint = world.seen_from(pose.position_m, time_s);
+        let to_world = pose.attitude.to_rotation_matrix();
+        for ray in &self.rays[first..last] {
+            self.sharp[ray.index] = viewpoint.radiance(to_world * ray.direction, &ray.aperture);
+        }
+    }
+
+    /// Blurs the rows rendered last into a frame: radiance on each pixel, as from
+    /// [`render`](Self::render).
+    pub fn finish(&mut self) -> &[f32] {
         blur_rows(&self.sharp, &mut self.scratch);
         blur_columns(&self.scratch, &mut self.blurred);
         &self.blurred
@@ -103,7 +129,7 @@ impl PixelRay {
                 cos_elevation * sin_bearing,
                 sin_elevation,
             ),
-            width_rad: (width * lens.elevation_per_px()).sqrt(),
+            aperture: Aperture::new(width, lens.elevation_per_px()),
         }
     }
 }

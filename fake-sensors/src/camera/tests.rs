@@ -49,8 +49,8 @@ fn mean(values: &[f32]) -> f32 {
 #[test]
 fn a_quarter_turn_of_the_camera_turns_the_image_by_exactly_a_quarter() {
     let mut renderer = AnnulusRenderer::new(&PanoramicLens::default());
-    let ahead = renderer.render(&world(), &pose(0.0)).to_vec();
-    let turned = renderer.render(&world(), &pose(FRAC_PI_2)).to_vec();
+    let ahead = renderer.render(&world(), &pose(0.0), 0.0).to_vec();
+    let turned = renderer.render(&world(), &pose(FRAC_PI_2), 0.0).to_vec();
     let mut compared = 0;
     for (x, y) in (0..WIDTH * HEIGHT).map(|index| (index % WIDTH, index / WIDTH)) {
         if in_ring(x, y) {
@@ -75,7 +75,7 @@ fn a_landmark_appears_at_its_bearing_minus_the_heading() {
             elevation_rad: 0.2,
         };
         let [x, y] = lens.project(view).map(|coordinate| coordinate as usize);
-        renderer.render(&world, &pose(yaw_rad))[y * WIDTH + x]
+        renderer.render(&world, &pose(yaw_rad), 0.0)[y * WIDTH + x]
     };
     let step = core::f32::consts::TAU / 24.0;
     let shift = 5.0 * step;

@@ -1,11 +1,25 @@
 //! Flat textured rectangles, and what a ray sees of them.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 
-use super::texture::Texture;
+use super::panorama::Projection;
+use crate::world::paint::{Texture, Tile};
 
 /// Surfaces reach this far beyond their edges in metres, so that no ray slips between neighbours.
 const OVERLAP_M: f32 = 1e-4;
+
+/// What is on a surface, in radiance.
+#[derive(Clone, Debug)]
+pub enum Skin {
+    /// A picture from edge to edge.
+    Picture(Texture),
+    /// A material, repeated, and the light on it.
+    Material(Arc<Tile>, f32),
+    /// A panorama, seen from the place where it was taken.
+    Projected(Arc<Projection>),
+}
 
 /// A rectangle that is visible from the side its normal points to.
 #[derive(Clone, Debug)]
@@ -17,12 +31,14 @@ pub struct Surface {
     normal: Vector3<f32>,
     width_m: f32,
     height_m: f32,
-    texture: Texture,
+    skin: Skin,
+    /// Index of the light that it follows.
+    light: u8,
 }
 
 /// A surface as seen from one point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SeenSurface<'a> {
+pub struct SeenSurface<'a> {
     surface: &'a Surface,
     /// Height of the viewpoint above the surface's plane in metres; positive on the visible side.
     height_m: f32,
@@ -33,9 +49,9 @@ pub(super) struct SeenSurface<'a> {
 
 /// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hit<'a> {
+pub struct Hit<'a> {
     surface: &'a Surface,
-    pub(super) distance_m: f32,
+    pub distance_m: f32,
     u_m: f32,
     v_m: f32,
     /// Cosine between the ray and the surface's normal.
@@ -45,11 +61,12 @@ pub(super) struct Hit<'a> {
 impl Surface {
     /// A rectangle with its texture's origin at `corner`; `u_axis` and `v_axis` are orthogonal unit
     /// vectors.
-    pub(super) fn new(
+    pub fn new(
         corner: Vector3<f32>,
         (u_axis, width_m): (Vector3<f32>, f32),
         (v_axis, height_m): (Vector3<f32>, f32),
-        texture: Texture,
+        skin: Skin,
+        light: u8,
     ) -> Self {
         Self {
             corner,
@@ -58,12 +75,13 @@ impl Surface {
             normal: u_axis.cross(&v_axis),
             width_m,
             height_m,
-            texture,
+            skin,
+            light,
         }
     }
 
     /// The surface from `viewpoint`, or `None` if that shows its back.
-    pub(super) fn seen_from(&self, viewpoint: Vector3<f32>) -> Option<SeenSurface<'_>> {
+    pub fn seen_from(&self, viewpoint: Vector3<f32>) -> Option<SeenSurface<'_>> {
         let offset = viewpoint - self.corner;
         let height_m = offset.dot(&self.normal);
         (height_m > 0.0).then(|| SeenSurface {
@@ -77,7 +95,7 @@ impl Surface {
 
 impl<'a> SeenSurface<'a> {
     /// Where the ray in unit `direction` meets the surface, if nearer than `limit_m`.
-    pub(super) fn hit(&self, direction: &Vector3<f32>, limit_m: f32) -> Option<Hit<'a>> {
+    pub fn hit(&self, direction: &Vector3<f32>, limit_m: f32) -> Option<Hit<'a>> {
         let surface = self.surface;
         let cos_incidence = -direction.dot(&surface.normal);
         if cos_incidence * limit_m <= self.height_m {
@@ -98,11 +116,25 @@ impl<'a> SeenSurface<'a> {
 }
 
 impl Hit<'_> {
-    /// Radiance towards a pixel that is `width_rad` wide: the texture, averaged over the pixel's
+    /// Radiance towards a pixel that is `width_rad` wide: the skin, averaged over the pixel's
     /// footprint. The footprint is a slanted ellipse; a circle of the same area stands for it.
-    pub(super) fn radiance(&self, width_rad: f32) -> f32 {
+    pub fn radiance(&self, width_rad: f32) -> f32 {
         let footprint_m = self.distance_m * width_rad / self.cos_incidence.sqrt();
-        self.surface.texture.sample(self.u_m, self.v_m, footprint_m)
+        let (u_m, v_m) = (self.u_m, self.v_m);
+        match &self.surface.skin {
+            Skin::Picture(texture) => texture.sample(u_m, v_m, footprint_m),
+            Skin::Material(tile, gain) => gain * tile.sample(u_m, v_m, footprint_m),
+            Skin::Projected(projection) => {
+                let surface = self.surface;
+                let point = surface.corner + surface.u_axis * u_m + surface.v_axis * v_m;
+                projection.radiance(&point, footprint_m)
+            }
+        }
+    }
+
+    /// Index of the light that the surface follows.
+    pub fn light(&self) -> usize {
+        self.surface.light.into()
     }
 }
 

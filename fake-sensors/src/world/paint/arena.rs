@@ -3,7 +3,8 @@
 //! All of it is drawn from a seed; nothing is photographed, so nothing has a licence. Lengths are
 //! in metres, brightness in reflectance.
 
-use super::canvas::{Area, Canvas};
+use super::between;
+use super::canvas::{Area, Canvas, Sheet};
 use crate::random::Normal;
 
 /// Width of a place for one canvas along a wall, in metres.
@@ -19,16 +20,16 @@ const ROOF: f32 = 0.05;
 const NATURAL: f32 = 0.24;
 
 /// Artificial grass: fine noise, almost even at a distance.
-pub(super) fn grass(noise: &mut Normal, side: f32) -> Canvas {
-    let mut canvas = Canvas::new(side, side, GRASS);
-    canvas.weather(noise, 0.08);
+pub fn grass(noise: &mut Normal, sheet: &Sheet, contrast: Option<f32>) -> Canvas {
+    let mut canvas = Canvas::new(sheet, GRASS);
+    canvas.weather(noise, contrast.unwrap_or(0.08));
     canvas
 }
 
 /// A dark roof with rows of lamps.
-pub(super) fn roof(noise: &mut Normal, side: f32) -> Canvas {
-    let mut canvas = Canvas::new(side, side, ROOF);
-    canvas.weather(noise, 0.1);
+pub fn roof(noise: &mut Normal, sheet: &Sheet, contrast: Option<f32>) -> Canvas {
+    let mut canvas = Canvas::new(sheet, ROOF);
+    canvas.weather(noise, contrast.unwrap_or(0.1));
     for (row, column) in (0..3).flat_map(|row| (0..4).map(move |column| (row, column))) {
         let lamp = Area {
             u: 1.5 + 3.0 * row as f32,
@@ -42,8 +43,9 @@ pub(super) fn roof(noise: &mut Normal, side: f32) -> Canvas {
 }
 
 /// A side of the arena: the hall with its windows, and before it a row of canvases and doors.
-pub(super) fn wall(noise: &mut Normal, width: f32, height: f32) -> Canvas {
-    let mut canvas = Canvas::new(width, height, HALL);
+pub fn wall(noise: &mut Normal, sheet: &Sheet, contrast: Option<f32>) -> Canvas {
+    let width = sheet.width_m;
+    let mut canvas = Canvas::new(sheet, HALL);
     windows(&mut canvas, noise, width);
     let places = (width / PLACE_M) as usize;
     for place in 0..places {
@@ -61,22 +63,17 @@ pub(super) fn wall(noise: &mut Normal, width: f32, height: f32) -> Canvas {
             door(&mut canvas, noise, area, brightness);
         }
     }
-    canvas.weather(noise, NATURAL);
+    canvas.weather(noise, contrast.unwrap_or(NATURAL));
     canvas
 }
 
 /// One side of a free-standing panel.
-pub(super) fn screen(noise: &mut Normal, width: f32, height: f32) -> Canvas {
-    let mut canvas = Canvas::new(width, height, HALL);
-    let area = Area {
-        u: 0.0,
-        v: 0.0,
-        width,
-        height,
-    };
+pub fn screen(noise: &mut Normal, sheet: &Sheet, contrast: Option<f32>) -> Canvas {
+    let mut canvas = Canvas::new(sheet, HALL);
+    let area = sheet.area();
     let brightness = between(noise, 0.4, 1.4);
     scene(&mut canvas, noise, area, brightness);
-    canvas.weather(noise, NATURAL);
+    canvas.weather(noise, contrast.unwrap_or(NATURAL));
     canvas
 }
 
@@ -159,9 +156,4 @@ fn door(canvas: &mut Canvas, noise: &mut Normal, area: Area, brightness: f32) {
     canvas.fill(frame, 0.5 * brightness);
     canvas.fill(leaf, 0.25 * brightness);
     canvas.fill(notice, 0.8 * brightness);
-}
-
-/// A number in `low..high`.
-fn between(noise: &mut Normal, low: f32, high: f32) -> f32 {
-    low + (high - low) * noise.uniform() as f32
 }

@@ -8,9 +8,9 @@
 use super::texture::Texture;
 use crate::random::Normal;
 
-/// Edge length of a texel in metres: below a pixel's footprint at the nearest distance a flight
-/// comes to a surface (0.5 m above the floor).
-const TEXEL_M: f32 = 0.03;
+/// Usual edge length of a texel in metres: below a pixel's footprint at the nearest distance a
+/// flight comes to a surface (0.5 m above the floor).
+pub const TEXEL_M: f32 = 0.03;
 /// Wavelength of the coarsest octave in metres: that of a whole wall.
 const COARSEST_M: f32 = 8.0;
 /// Reflectance of white paper: nothing on a canvas is brighter.
@@ -18,26 +18,67 @@ const WHITE: f32 = 0.9;
 
 /// A rectangle on a canvas in metres: from (`u`, `v`) to (`u + width`, `v + height`).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Area {
-    pub(super) u: f32,
-    pub(super) v: f32,
-    pub(super) width: f32,
-    pub(super) height: f32,
+pub struct Area {
+    pub u: f32,
+    pub v: f32,
+    pub width: f32,
+    pub height: f32,
+}
+
+/// Size and resolution of a canvas.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheet {
+    /// Width in metres.
+    pub width_m: f32,
+    /// Height in metres.
+    pub height_m: f32,
+    /// Edge length of a texel in metres.
+    pub texel_m: f32,
+}
+
+impl Sheet {
+    /// Columns and rows of texels.
+    pub fn texels(&self) -> [usize; 2] {
+        [self.width_m, self.height_m].map(|m| (m / self.texel_m + 0.5) as usize + 1)
+    }
+
+    /// All of it.
+    pub fn area(&self) -> Area {
+        Area {
+            u: 0.0,
+            v: 0.0,
+            width: self.width_m,
+            height: self.height_m,
+        }
+    }
+}
+
+/// A patch of sunlight: a parallelogram with two level edges.
+#[derive(Clone, Copy, Debug)]
+pub struct Patch {
+    /// The rectangle that it would be without its slant.
+    pub area: Area,
+    /// How far the upper edge is shifted along u, in metres.
+    pub slant_m: f32,
+    /// How many times brighter it is than what lies beside it.
+    pub times: f32,
 }
 
 /// A texture being painted in reflectance; u along its width, v up its height.
 #[derive(Clone, Debug)]
-pub(super) struct Canvas {
+pub struct Canvas {
+    sheet: Sheet,
     width: usize,
     height: usize,
     texels: Vec<f32>,
 }
 
 impl Canvas {
-    /// An even canvas of the given size in metres.
-    pub(super) fn new(width_m: f32, height_m: f32, reflectance: f32) -> Self {
-        let [width, height] = [width_m, height_m].map(|m| (m / TEXEL_M + 0.5) as usize + 1);
+    /// An even canvas.
+    pub fn new(sheet: &Sheet, reflectance: f32) -> Self {
+        let [width, height] = sheet.texels();
         Self {
+            sheet: *sheet,
             width,
             height,
             texels: vec![reflectance; width * height],
@@ -46,11 +87,11 @@ impl Canvas {
 
     /// Multiplies all of the canvas by noise of natural statistics: each octave from
     /// [`COARSEST_M`] down has log-contrast `contrast` (standard deviation).
-    pub(super) fn weather(&mut self, noise: &mut Normal, contrast: f32) {
+    pub fn weather(&mut self, noise: &mut Normal, contrast: f32) {
         let mut field = vec![0.0; self.texels.len()];
         let mut wavelength_m = COARSEST_M;
-        while wavelength_m > 2.0 * TEXEL_M {
-            let cell = 0.5 * wavelength_m / TEXEL_M;
+        while wavelength_m > 2.0 * self.sheet.texel_m {
+            let cell = 0.5 * wavelength_m / self.sheet.texel_m;
             Lattice::new(noise, self.width, self.height, cell).add_to(&mut field, self.width);
             wavelength_m *= 0.5;
         }
@@ -61,14 +102,15 @@ impl Canvas {
 
     /// Paints `area` with `shade`, which gets (0..1, 0..1) within the area and the old
     /// reflectance, and gives the new.
-    pub(super) fn paint(&mut self, area: Area, shade: impl Fn(f32, f32, f32) -> f32) {
+    pub fn paint(&mut self, area: Area, shade: impl Fn(f32, f32, f32) -> f32) {
+        let texel_m = self.sheet.texel_m;
         for v in 0..self.height {
-            let y = ((v as f32 + 0.5) * TEXEL_M - area.v) / area.height;
+            let y = ((v as f32 + 0.5) * texel_m - area.v) / area.height;
             if !(0.0..1.0).contains(&y) {
                 continue;
             }
             for u in 0..self.width {
-                let x = ((u as f32 + 0.5) * TEXEL_M - area.u) / area.width;
+                let x = ((u as f32 + 0.5) * texel_m - area.u) / area.width;
                 if (0.0..1.0).contains(&x) {
                     let texel = &mut self.texels[v * self.width + u];
                     *texel = shade(x, y, *texel);
@@ -78,12 +120,12 @@ impl Canvas {
     }
 
     /// Fills a rectangle.
-    pub(super) fn fill(&mut self, area: Area, reflectance: f32) {
+    pub fn fill(&mut self, area: Area, reflectance: f32) {
         self.paint(area, |_, _, _| reflectance);
     }
 
     /// Fills the ellipse that touches the edges of `area`.
-    pub(super) fn fill_ellipse(&mut self, area: Area, reflectance: f32) {
+    pub fn fill_ellipse(&mut self, area: Area, reflectance: f32) {
         self.paint(area, |x, y, old| {
             let (x, y) = (2.0 * x - 1.0, 2.0 * y - 1.0);
             if x * x + y * y < 1.0 {
@@ -94,13 +136,40 @@ impl Canvas {
         });
     }
 
-    /// The finished picture as radiance under `light`; 1 is the world's usual light.
-    pub(super) fn lit_by(self, light: f32) -> Texture {
-        let radiances = self
+    /// The finished picture as radiance under `light`, with `sun` on it; 1 is white paper in the
+    /// world's usual light.
+    pub fn lit_by(self, light: f32, brightness: f32, sun: &[Patch]) -> Texture {
+        let texel_m = self.sheet.texel_m;
+        let mut radiances: Vec<f32> = self
             .texels
             .into_iter()
-            .map(|texel| light * texel.min(WHITE));
-        Texture::new(self.width, radiances.collect(), 1.0 / TEXEL_M)
+            .map(|texel| light * (brightness * texel).min(WHITE))
+            .collect();
+        for (v, line) in radiances.chunks_exact_mut(self.width).enumerate() {
+            for patch in sun {
+                let y = ((v as f32 + 0.5) * texel_m - patch.area.v) / patch.area.height;
+                if (0.0..1.0).contains(&y) {
+                    let start_m = patch.area.u + patch.slant_m * y;
+                    shine(
+                        line,
+                        texel_m,
+                        start_m,
+                        start_m + patch.area.width,
+                        patch.times,
+                    );
+                }
+            }
+        }
+        Texture::new(self.width, radiances, 1.0 / texel_m)
+    }
+}
+
+/// Makes the texels between `start_m` and `end_m` brighter.
+fn shine(line: &mut [f32], texel_m: f32, start_m: f32, end_m: f32, times: f32) {
+    for (u, texel) in line.iter_mut().enumerate() {
+        if (start_m..end_m).contains(&((u as f32 + 0.5) * texel_m)) {
+            *texel *= times;
+        }
     }
 }
 
@@ -145,7 +214,7 @@ impl Lattice {
 }
 
 /// First lattice point and the four cubic B-spline weights at texel `x`.
-fn spline(x: usize, cell: f32) -> (usize, [f32; 4]) {
+pub fn spline(x: usize, cell: f32) -> (usize, [f32; 4]) {
     let x = x as f32 / cell;
     let t = x - x.floor();
     let (t2, t3) = (t * t, t * t * t);

@@ -17,7 +17,7 @@ struct Level {
 
 impl Texture {
     /// A texture of `width` columns, `texels` given row by row from the surface's origin.
-    pub(super) fn new(width: usize, texels: Vec<f32>, texels_per_m: f32) -> Self {
+    pub fn new(width: usize, texels: Vec<f32>, texels_per_m: f32) -> Self {
         let height = texels.len() / width;
         let mut levels = vec![Level {
             width,
@@ -34,7 +34,7 @@ impl Texture {
     }
 
     /// Radiance at (`u_m`, `v_m`), averaged over about `footprint_m`.
-    pub(super) fn sample(&self, u_m: f32, v_m: f32, footprint_m: f32) -> f32 {
+    pub fn sample(&self, u_m: f32, v_m: f32, footprint_m: f32) -> f32 {
         let (u, v) = (u_m * self.texels_per_m, v_m * self.texels_per_m);
         let top = (self.levels.len() - 1) as f32;
         let lod = log2(footprint_m * self.texels_per_m).clamp(0.0, top);
@@ -92,13 +92,13 @@ fn neighbours(x: f32, count: usize) -> (usize, usize, f32) {
 
 /// Whole and fractional part of a number from 0 on. (`floor` is a call where the processor is not
 /// known to have an instruction for it.)
-fn split(x: f32) -> (usize, f32) {
+pub(super) fn split(x: f32) -> (usize, f32) {
     let whole = x as usize;
     (whole, x - whole as f32)
 }
 
 /// log2, exact at powers of two and linear between them (error below 0.09): picks mip levels.
-fn log2(x: f32) -> f32 {
+pub(super) fn log2(x: f32) -> f32 {
     const MANTISSA: f32 = (1_u32 << 23) as f32;
     const BIAS: f32 = 127.0;
     x.to_bits() as f32 / MANTISSA - BIAS

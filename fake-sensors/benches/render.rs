@@ -1,0 +1,58 @@
+//! Camera frames a second, with the rolling shutter: each row is seen from a pose of its own.
+//!
+//!     cargo bench -p fake-sensors --bench render
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use fake_sensors::camera::{
+    AnnulusRenderer, Exposure, FRAME_BYTES, HEIGHT, ImageSensor, PanoramicLens, Pose,
+};
+use fake_sensors::world::{WORLD_NAMES, World};
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// From the first row to the last at 25.64 frames a second.
+const READOUT_S: f64 = 0.035;
+/// Flight speed.
+const SPEED_M_S: f64 = 0.5;
+
+const EXPOSURE: Exposure = Exposure {
+    lines: 150,
+    gain: 1.0,
+};
+
+fn main() {
+    divan::main();
+}
+
+/// The camera on the first leg of the routes, `time_s` into a flight that never ends.
+fn pose(time_s: f64) -> Pose {
+    let way_m = (time_s * SPEED_M_S) % 5.0;
+    let swing = (0.1 * (7.0 * time_s).sin()) as f32;
+    Pose {
+        position_m: Vector3::new(-way_m as f32, 0.0, 0.5),
+        attitude: UnitQuaternion::from_euler_angles(swing, -0.5 * swing, 0.3 * time_s as f32),
+    }
+}
+
+/// From poses to the bytes of a frame; the rate is frames a second.
+#[divan::bench(args = WORLD_NAMES)]
+fn frame(bencher: Bencher<'_, '_>, name: &str) {
+    let Ok(world) = World::named(name, 1) else {
+        return;
+    };
+    let lens = PanoramicLens::default();
+    let mut renderer = AnnulusRenderer::new(&lens);
+    let mut sensor = ImageSensor::new(&lens, 1);
+    let mut bytes = Box::new([0; FRAME_BYTES]);
+    let mut number = 0;
+    bencher.counter(ItemsCount::new(1_u32)).bench_local(|| {
+        let start_s = f64::from(number) * 0.039;
+        for row in 0..HEIGHT {
+            let time_s = start_s + READOUT_S * row as f64 / HEIGHT as f64;
+            renderer.render_rows(row..row + 1, &world, &pose(time_s), time_s);
+        }
+        sensor.form_image(renderer.finish(), EXPOSURE, number, &mut bytes);
+        number += 1;
+        bytes[FRAME_BYTES / 2]
+    });
+}

@@ -1,0 +1,337 @@
+//! A built world: surfaces, solids, what moves, what is far away, and its lights.
+
+pub mod bvh;
+pub mod cover;
+pub mod light;
+pub mod motion;
+pub mod panorama;
+pub mod ray;
+pub mod sky;
+pub mod solid;
+pub mod surface;
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::paint::Tile;
+use bvh::Bvh;
+use cover::{Cover, Covers};
+use light::Curve;
+use motion::Path;
+use panorama::Panorama;
+use ray::{Aperture, Ray};
+use sky::Sky;
+use solid::{Form, Solid, Touch};
+use surface::{Hit, SeenSurface, Surface};
+
+/// Lights of a world at most, with the one that never changes.
+pub const MAX_LIGHTS: usize = 8;
+/// Index of the light that never changes.
+pub const STEADY: u8 = 0;
+/// Radiance where nothing is.
+const NOTHING: f32 = 0.0;
+/// Share of the overhead light that reaches a face that looks down.
+const FROM_BELOW: f32 = 0.35;
+
+/// What a solid is made of.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// Its look, in reflectance.
+    pub tile: Arc<Tile>,
+    /// Factor on that: its light and brightness. The radiance of what shines.
+    pub gain: f32,
+    /// Index of the light that it follows.
+    pub light: u8,
+    /// It shines by itself: no shading.
+    pub shines: bool,
+}
+
+/// Solids that go along a path together.
+#[derive(Clone, Debug)]
+pub struct Mover {
+    /// Where they go.
+    pub path: Path,
+    /// The solids at the path's start.
+    pub solids: Vec<Solid>,
+}
+
+/// What is behind everything.
+#[derive(Clone, Debug)]
+pub enum Dome {
+    /// Nothing: black.
+    Nothing,
+    /// A painted sky.
+    Sky(Sky, u8),
+    /// A picture.
+    Panorama(Arc<Panorama>, u8),
+}
+
+/// The sunlight on solids.
+#[derive(Clone, Copy, Debug)]
+pub struct Sunlight {
+    /// Unit vector to the sun.
+    pub towards: Vector3<f32>,
+    /// Its share of the light.
+    pub share: f32,
+}
+
+/// Everything that a camera can see.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Rectangles: few, each asked for every ray.
+    pub surfaces: Vec<Surface>,
+    /// Solids that stand still.
+    pub solids: Bvh,
+    /// Things that move.
+    pub movers: Vec<Mover>,
+    /// What solids are made of.
+    pub materials: Vec<Material>,
+    /// What is behind everything.
+    pub dome: Dome,
+    /// The sun on solids.
+    pub sunlight: Option<Sunlight>,
+    /// Lights after the steady one.
+    pub lights: Vec<Curve>,
+}
+
+/// A thing that moves, at one time.
+#[derive(Clone, Debug)]
+struct Moved {
+    centre: Vector3<f32>,
+    radius_m: f32,
+    solids: Vec<Solid>,
+}
+
+/// A scene as seen from one point at one time.
+#[derive(Clone, Debug)]
+pub struct Viewpoint<'a> {
+    scene: &'a Scene,
+    position_m: Vector3<f32>,
+    surfaces: Vec<SeenSurface<'a>>,
+    moved: Vec<Moved>,
+    levels: [f32; MAX_LIGHTS],
+}
+
+impl Scene {
+    /// The scene as seen from `position_m` at `time_s`.
+    pub fn seen_from(&self, position_m: Vector3<f32>, time_s: f64) -> Viewpoint<'_> {
+        let seen = |surface| Surface::seen_from(surface, position_m);
+        let mut levels = [1.0; MAX_LIGHTS];
+        for (level, curve) in levels[1..].iter_mut().zip(&self.lights) {
+            *level = curve.level(time_s);
+        }
+        Viewpoint {
+            scene: self,
+            position_m,
+            surfaces: self.surfaces.iter().filter_map(seen).collect(),
+            moved: self.movers.iter().map(|mover| mover.at(time_s)).collect(),
+            levels,
+        }
+    }
+}
+
+impl Mover {
+    fn at(&self, time_s: f64) -> Moved {
+        let offset_m = self.path.offset_m(time_s);
+        let solids: Vec<Solid> = self
+            .solids
+            .iter()
+            .map(|solid| Solid {
+                centre: solid.centre + offset_m,
+                ..*solid
+            })
+            .collect();
+        let low = solids
+            .iter()
+            .fold(Vector3::repeat(f32::INFINITY), |low, s| {
+                low.inf(&(s.centre - s.bounds()))
+            });
+        let high = solids
+            .iter()
+            .fold(Vector3::repeat(f32::NEG_INFINITY), |high, s| {
+                high.sup(&(s.centre + s.bounds()))
+            });
+        Moved {
+            centre: 0.5 * (low + high),
+            radius_m: 0.5 * (high - low).norm(),
+            solids,
+        }
+    }
+}
+
+impl Moved {
+    /// Whether the widening ray passes through the ball round the thing.
+    fn is_near(&self, ray: &Ray) -> bool {
+        let to_centre = self.centre - ray.origin;
+        let ahead_m = to_centre.dot(&ray.direction).max(0.0);
+        let reach_m = self.radius_m + ahead_m * ray.half_across.max(ray.half_up);
+        (to_centre - ray.direction * ahead_m).norm_squared() <= reach_m * reach_m
+    }
+}
+
+impl Viewpoint<'_> {
+    /// Radiance from unit `direction`, averaged over a pixel; 1 is white paper in the world's usual
+    /// light.
+    #[must_use]
+    pub fn radiance(&self, direction: Vector3<f32>, aperture: &Aperture) -> f32 {
+        let hit = self.first_hit(&direction);
+        let limit_m = hit.as_ref().map_or(f32::INFINITY, |hit| hit.distance_m);
+        if !self.holds_solids() {
+            return self.behind(hit.as_ref(), &direction, aperture);
+        }
+        let ray = Ray::new(self.position_m, direction, aperture);
+        let covers = self.covers(&ray, limit_m);
+        let (mut through, mut light) = (1.0, 0.0);
+        for cover in covers.iter() {
+            light += through * cover.share * self.shade(&ray, cover);
+            through *= 1.0 - cover.share;
+        }
+        if covers.limit_m() < limit_m {
+            // Nothing behind is seen; what little was left is shared out.
+            return light / (1.0 - through);
+        }
+        light + through * self.behind(hit.as_ref(), &direction, aperture)
+    }
+
+    fn holds_solids(&self) -> bool {
+        !self.moved.is_empty() || !self.scene.solids.is_empty()
+    }
+
+    /// Radiance of the surface or the sky behind all solids.
+    fn behind(&self, hit: Option<&Hit<'_>>, way: &Vector3<f32>, aperture: &Aperture) -> f32 {
+        match hit {
+            Some(hit) => hit.radiance(aperture.mean_rad()) * self.levels[hit.light()],
+            None => self.dome(way, aperture.mean_rad()),
+        }
+    }
+
+    /// Metres to the nearest surface or solid in unit `direction`; `None` where there is none.
+    #[must_use]
+    pub fn distance_m(&self, direction: Vector3<f32>) -> Option<f32> {
+        let hit = self.first_hit(&direction);
+        let limit_m = hit.as_ref().map_or(f32::INFINITY, |hit| hit.distance_m);
+        let ray = Ray::new(self.position_m, direction, &Aperture::POINT);
+        let covers = self.covers(&ray, limit_m);
+        let solid = covers.iter().find(|cover| cover.share >= 0.5);
+        solid
+            .map(|cover| cover.distance_m)
+            .or(hit.map(|hit| hit.distance_m))
+    }
+
+    /// Whether something is seen in unit `direction`, be it the sky.
+    #[must_use]
+    pub fn sees_something(&self, direction: Vector3<f32>) -> bool {
+        !matches!(self.scene.dome, Dome::Nothing) || self.distance_m(direction).is_some()
+    }
+
+    fn first_hit(&self, direction: &Vector3<f32>) -> Option<Hit<'_>> {
+        let mut nearest = None;
+        let mut limit_m = f32::INFINITY;
+        for surface in &self.surfaces {
+            if let Some(hit) = surface.hit(direction, limit_m) {
+                limit_m = hit.distance_m;
+                nearest = Some(hit);
+            }
+        }
+        nearest
+    }
+
+    fn covers(&self, ray: &Ray, limit_m: f32) -> Covers<'_> {
+        let mut covers = Covers::before(limit_m);
+        for moved in &self.moved {
+            if moved.is_near(ray) {
+                for solid in &moved.solids {
+                    self.offer(ray, solid, &mut covers);
+                }
+            }
+        }
+        self.scene.solids.visit(ray, &mut covers, |solid, covers| {
+            self.offer(ray, solid, covers)
+        });
+        covers
+    }
+
+    fn offer<'a>(&'a self, ray: &Ray, solid: &'a Solid, covers: &mut Covers<'a>) {
+        let Some(touch) = solid.touch(ray, covers.limit_m()) else {
+            return;
+        };
+        let shift_m = if solid.ragged > 0.0 {
+            self.stray(ray, solid, &touch)
+        } else {
+            0.0
+        };
+        let share = touch.share(shift_m);
+        if share > 0.0 {
+            covers.add(Cover {
+                solid,
+                distance_m: touch.distance_m,
+                share,
+            });
+        }
+    }
+
+    /// How far a ragged outline lies outside the solid's own where the ray passes: foliage is bulgy
+    /// where it is light.
+    fn stray(&self, ray: &Ray, solid: &Solid, touch: &Touch) -> f32 {
+        let tile = &self.scene.materials[usize::from(solid.material)].tile;
+        let (u, v) = on_tile(solid, &ray.at(touch.distance_m));
+        let bulge = tile.sample(u, v, 2.0 * touch.half_width_m) / tile.mean() - 1.0;
+        solid.ragged * touch.reach_m * bulge.clamp(-1.0, 1.0)
+    }
+
+    /// Radiance of a solid's part of a pixel.
+    fn shade(&self, ray: &Ray, cover: &Cover<'_>) -> f32 {
+        let solid = cover.solid;
+        let material = &self.scene.materials[usize::from(solid.material)];
+        let level = material.gain * self.levels[usize::from(material.light)];
+        if material.shines {
+            return level;
+        }
+        let point = ray.at(cover.distance_m);
+        let (u, v) = on_tile(solid, &point);
+        let footprint_m = 2.0 * ray.half_mean * cover.distance_m;
+        let normal = solid.normal(&point);
+        let above = FROM_BELOW + (1.0 - FROM_BELOW) * (0.5 + 0.5 * normal.z);
+        let light = match &self.scene.sunlight {
+            Some(sun) => {
+                let facing = normal.dot(&sun.towards).max(0.0);
+                sun.share * facing + (1.0 - sun.share) * above
+            }
+            None => above,
+        };
+        level * light * material.tile.sample(u, v, footprint_m)
+    }
+
+    fn dome(&self, direction: &Vector3<f32>, width_rad: f32) -> f32 {
+        match &self.scene.dome {
+            Dome::Nothing => NOTHING,
+            Dome::Sky(sky, light) => {
+                self.levels[usize::from(*light)] * sky.radiance(direction, width_rad)
+            }
+            Dome::Panorama(picture, light) => {
+                self.levels[usize::from(*light)] * picture.radiance(direction, width_rad)
+            }
+        }
+    }
+}
+
+/// Where on its material's tile a point of a solid lies: a slanted projection, fixed to the solid, in
+/// which no face is seen edge on.
+fn on_tile(solid: &Solid, point: &Vector3<f32>) -> (f32, f32) {
+    let out = point - solid.centre;
+    // Two solids of one material differ: each has its own place on the tile.
+    let place = 7.3 * solid.centre.x + 3.1 * solid.centre.y;
+    match solid.form {
+        Form::Block([cos, sin]) => {
+            let (x, y) = (cos * out.x + sin * out.y, cos * out.y - sin * out.x);
+            (x + y + place, out.z + 0.4 * y)
+        }
+        // Furrows run straight up a trunk.
+        Form::Column => (out.x + 0.6 * out.y + place, point.z),
+        Form::Ball => (
+            out.x + 0.6 * out.y + 0.4 * out.z + place,
+            out.z + 0.5 * out.y - 0.3 * out.x,
+        ),
+    }
+}
