@@ -185,6 +185,29 @@ fn finalise_folds_the_error_into_attitude_and_covariance() {
 }
 
 #[test]
+fn noise_updates_and_finalise_each_leave_the_covariance_within_its_bounds() {
+    let beyond = || {
+        let mut state = busy_state();
+        state.covariance = Covariance::from_diagonal_element(1e-8);
+        state.covariance[(0, 0)] = 400.0;
+        state
+    };
+    let assert_bounded = |what: &str, state: &State| {
+        let p = &state.covariance;
+        assert_eq!((p[(0, 0)], p[(8, 8)]), (100.0, 1e-6), "{what}");
+    };
+    let mut state = beyond();
+    state.add_process_noise(&Parameters::default().process_noise, 0.0);
+    assert_bounded("noise", &state);
+    let mut state = beyond();
+    state.scalar_update(&[Sensitivity::direct(4)], 0.0, 1.0);
+    assert_bounded("update", &state);
+    let mut state = beyond();
+    state.finalise();
+    assert_bounded("finalise", &state);
+}
+
+#[test]
 fn finalise_throws_away_errors_within_the_dead_band_and_beyond_ten() {
     for error in [9.9e-5, 10.5] {
         let mut state = busy_state();
