@@ -80,6 +80,25 @@ fn variances_and_correlations_are_the_closed_forms() {
 }
 
 #[test]
+fn turbulence_is_in_full_swing_from_the_start() {
+    const SEEDS: u64 = 4000;
+    let model = breeze();
+    let firsts: Vec<Vector3<f64>> = (0..SEEDS)
+        .map(|seed| Wind::new(&model, seed).tick() - model.mean_m_s)
+        .collect();
+    let vertical = 0.4 * Scales::at_height(model.height_m).vertical_share;
+    for (axis, sigma) in [0.4, 0.4, vertical].into_iter().enumerate() {
+        let squares = firsts.iter().map(|first| first[axis] * first[axis]);
+        let variance = squares.sum::<f64>() / SEEDS as f64;
+        // Four standard errors of a variance: 4 sqrt(2 / n).
+        assert!(
+            (variance / (sigma * sigma) - 1.0).abs() < 0.09,
+            "axis {axis}: {variance} against {sigma} squared"
+        );
+    }
+}
+
+#[test]
 fn a_millisecond_changes_the_wind_by_what_the_correlation_allows() {
     let model = breeze();
     let scales = Scales::at_height(model.height_m);
@@ -117,6 +136,11 @@ fn turbulence_turns_with_the_wind() {
         assert!((turned_y - x).abs() < 1e-12 && (turned_x + y).abs() < 1e-12);
         assert!((turned_z - z).abs() < 1e-12);
     }
+}
+
+#[test]
+fn another_seed_is_another_wind() {
+    assert_ne!(turbulence(&breeze(), 1, 1), turbulence(&breeze(), 2, 1));
 }
 
 #[test]

@@ -16,6 +16,7 @@ use super::description::things::Light;
 use super::error::{Mistake, Reason};
 use super::paint::{Painter, Tile};
 use super::scene::bvh::Bvh;
+use super::scene::haze::Haze;
 use super::scene::light::Curve;
 use super::scene::solid::Solid;
 use super::scene::surface::Surface;
@@ -118,10 +119,13 @@ impl<'a> Builder<'a> {
     }
 
     fn finish(self) -> Built {
+        let solids = Bvh::new(self.solids, |solids, half| {
+            Haze::of(solids, half, &self.materials)
+        });
         Built {
             scene: Scene {
                 surfaces: self.surfaces,
-                solids: Bvh::new(self.solids),
+                solids,
                 movers: self.movers,
                 materials: self.materials,
                 dome: self.dome,

@@ -1,18 +1,24 @@
 //! A bounding volume hierarchy with four children a node, for rays that widen.
 //!
 //! The four children's boxes lie side by side in arrays, so that the compiler tests them with one
-//! instruction each. A box is grown by half the pixel's width at its far end before the test.
+//! instruction each. A box is grown by half the pixel's width at its far end before the test. Where
+//! a pixel is wider than a box, the box's [`Haze`] stands for what is in it.
 
 use nalgebra::Vector3;
 
-use super::cover::Covers;
+use super::cover::{Cover, Covers, Sight};
+use super::haze::Haze;
 use super::ray::Ray;
-use super::solid::Solid;
+use super::solid::{Form, Solid};
 
 /// Solids in a leaf at most.
 const LEAF: usize = 4;
 /// Nodes that wait at most: three on each of the levels that 2^20 solids make, and some.
 const WAITING: usize = 64;
+/// From this many times a box's half diagonal on, half a pixel's width sees its haze.
+const BLURRED: f32 = 0.3;
+/// Boxes with more solids than this have no haze: they are never that far away.
+const HAZY: usize = 512;
 
 /// Where a child leads.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +38,7 @@ struct Node {
     /// Their half diagonals.
     radius: [f32; 4],
     children: [Child; 4],
+    haze: [Option<Haze>; 4],
 }
 
 /// Solids in a tree of boxes.
@@ -62,11 +69,14 @@ impl Bounds {
 }
 
 impl Bvh {
-    /// Sorts `solids` into a tree.
-    pub fn new(mut solids: Vec<Solid>) -> Self {
+    /// Sorts `solids` into a tree; `haze` sums up what is in a box.
+    pub fn new(
+        mut solids: Vec<Solid>,
+        haze: impl Fn(&[Solid], &Vector3<f32>) -> Option<Haze>,
+    ) -> Self {
         let mut nodes = Vec::new();
         if !solids.is_empty() {
-            grow(&mut nodes, &mut solids, 0);
+            grow(&mut nodes, &mut solids, 0, &haze);
         }
         Self { nodes, solids }
     }
@@ -76,7 +86,8 @@ impl Bvh {
         self.nodes.is_empty()
     }
 
-    /// Offers `covers` every solid that may touch the pixel and is not hidden, nearest boxes first.
+    /// Offers `covers` every solid that may touch the pixel and is not hidden, nearest boxes first;
+    /// adds the haze of those that are too far away.
     pub fn visit<'a>(
         &'a self,
         ray: &Ray,
@@ -92,38 +103,55 @@ impl Bvh {
                 continue;
             }
             let node = &self.nodes[node as usize];
-            let (order, enters_m) = node.nearest_first(ray);
-            // The last to wait is the first to be visited: leaves at once, nodes farthest first.
+            let (order, enters_m, widths_m) = node.nearest_first(ray);
+            let first_new = count;
             for &lane in &order {
                 if enters_m[lane] >= covers.limit_m() {
                     break;
                 }
-                if let Child::Leaf(first, solids) = node.children[lane] {
-                    let leaf = first as usize..(first + solids) as usize;
-                    self.solids[leaf]
-                        .iter()
-                        .for_each(|solid| offer(solid, covers));
-                }
-            }
-            for &lane in order.iter().rev() {
-                if let Child::Node(child) = node.children[lane]
-                    && enters_m[lane] < covers.limit_m()
-                    && count < WAITING
+                if let Some(haze) = &node.haze[lane]
+                    && widths_m[lane] > BLURRED * node.radius[lane]
                 {
-                    waiting[count] = (child, enters_m[lane]);
-                    count += 1;
+                    add_haze(haze, &node.ball(lane), ray, covers);
+                    continue;
+                }
+                match node.children[lane] {
+                    Child::Leaf(first, solids) => {
+                        for solid in &self.solids[first as usize..(first + solids) as usize] {
+                            offer(solid, covers);
+                        }
+                    }
+                    Child::Node(child) if count < WAITING => {
+                        waiting[count] = (child, enters_m[lane]);
+                        count += 1;
+                    }
+                    Child::Node(_) | Child::Nothing => {}
                 }
             }
+            // The last to wait is the next to be visited: the nearest.
+            waiting[first_new..count].reverse();
         }
     }
 }
 
 impl Node {
-    /// The children in order of distance, and where the widening ray enters each; infinite if it
-    /// does not.
+    /// The ball that fills a child's box, as round as may be.
+    fn ball(&self, lane: usize) -> Solid {
+        let level_m = 0.5 * (self.half[0][lane] + self.half[1][lane]);
+        Solid {
+            centre: Vector3::from([0, 1, 2].map(|axis| self.middle[axis][lane])),
+            half: Vector3::new(level_m, level_m, self.half[2][lane]),
+            form: Form::Ball,
+            ragged: 0.0,
+            material: 0,
+        }
+    }
+
+    /// The children in order of distance, where the widening ray enters each (infinite if it does
+    /// not), and half the pixel's width there.
     #[inline]
-    fn nearest_first(&self, ray: &Ray) -> ([usize; 4], [f32; 4]) {
-        let enters = self.enters_m(ray);
+    fn nearest_first(&self, ray: &Ray) -> ([usize; 4], [f32; 4], [f32; 4]) {
+        let (enters, widths) = self.enters_m(ray);
         let mut order = [0, 1, 2, 3];
         // A sorting network for four.
         for (a, b) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
@@ -131,11 +159,11 @@ impl Node {
                 order.swap(a, b);
             }
         }
-        (order, enters)
+        (order, enters, widths)
     }
 
     #[inline]
-    fn enters_m(&self, ray: &Ray) -> [f32; 4] {
+    fn enters_m(&self, ray: &Ray) -> ([f32; 4], [f32; 4]) {
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z];
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z];
         let width = ray.half_across.max(ray.half_up);
@@ -165,7 +193,18 @@ impl Node {
                 enter[lane] = f32::INFINITY;
             }
         }
-        enter
+        (enter, grown)
+    }
+}
+
+/// Adds what is in a box that is too small for the pixel.
+fn add_haze<'a>(haze: &'a Haze, ball: &Solid, ray: &Ray, covers: &mut Covers<'a>) {
+    if let Some(touch) = ball.touch(ray, covers.limit_m()) {
+        covers.add(Cover {
+            sight: Sight::Haze(haze),
+            distance_m: touch.distance_m,
+            share: haze.cover * touch.share(0.0),
+        });
     }
 }
 
@@ -179,13 +218,19 @@ fn smaller(a: f32, b: f32) -> f32 {
 }
 
 /// Builds the node over `solids`, which begin at `first`, and gives its index.
-fn grow(nodes: &mut Vec<Node>, solids: &mut [Solid], first: usize) -> usize {
+fn grow(
+    nodes: &mut Vec<Node>,
+    solids: &mut [Solid],
+    first: usize,
+    haze: &impl Fn(&[Solid], &Vector3<f32>) -> Option<Haze>,
+) -> usize {
     let index = nodes.len();
     nodes.push(Node {
         middle: [[0.0; 4]; 3],
         half: [[f32::NEG_INFINITY; 4]; 3],
         radius: [0.0; 4],
         children: [Child::Nothing; 4],
+        haze: [None; 4],
     });
     let half = split(solids);
     let (left, right) = solids.split_at_mut(half);
@@ -205,7 +250,7 @@ fn grow(nodes: &mut Vec<Node>, solids: &mut [Solid], first: usize) -> usize {
         let child = if part.len() <= LEAF {
             Child::Leaf(start as u32, part.len() as u32)
         } else {
-            Child::Node(grow(nodes, part, start) as u32)
+            Child::Node(grow(nodes, part, start, haze) as u32)
         };
         start += part.len();
         let node = &mut nodes[index];
@@ -215,6 +260,7 @@ fn grow(nodes: &mut Vec<Node>, solids: &mut [Solid], first: usize) -> usize {
         }
         node.radius[lane] = extent.norm();
         node.children[lane] = child;
+        node.haze[lane] = (part.len() <= HAZY).then(|| haze(part, &extent)).flatten();
     }
     index
 }

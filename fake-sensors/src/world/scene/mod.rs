@@ -2,6 +2,7 @@
 
 pub mod bvh;
 pub mod cover;
+pub mod haze;
 pub mod light;
 pub mod motion;
 pub mod panorama;
@@ -16,7 +17,8 @@ use nalgebra::Vector3;
 
 use super::paint::Tile;
 use bvh::Bvh;
-use cover::{Cover, Covers};
+use cover::{Cover, Covers, Sight};
+use haze::Haze;
 use light::Curve;
 use motion::Path;
 use panorama::Panorama;
@@ -187,7 +189,7 @@ impl Viewpoint<'_> {
             light += through * cover.share * self.shade(&ray, cover);
             through *= 1.0 - cover.share;
         }
-        if covers.limit_m() < limit_m {
+        if covers.closed() {
             // Nothing behind is seen; what little was left is shared out.
             return light / (1.0 - through);
         }
@@ -256,51 +258,76 @@ impl Viewpoint<'_> {
         let Some(touch) = solid.touch(ray, covers.limit_m()) else {
             return;
         };
-        let shift_m = if solid.ragged > 0.0 {
-            self.stray(ray, solid, &touch)
+        let reach_m = solid.ragged * touch.reach_m;
+        // Bulges smaller than a pixel do not show, nor do those beside it.
+        let visible = 1.0 - touch.half_width_m / touch.reach_m;
+        let edge = touch.depth_m - touch.half_width_m < reach_m;
+        let shift_m = if reach_m > 0.0 && visible > 0.0 && edge {
+            visible * reach_m * self.bulge(ray, solid, &touch)
         } else {
             0.0
         };
         let share = touch.share(shift_m);
-        if share > 0.0 {
-            covers.add(Cover {
-                solid,
-                distance_m: touch.distance_m,
-                share,
-            });
+        covers.add(Cover {
+            sight: Sight::Solid(solid),
+            distance_m: touch.distance_m,
+            share,
+        });
+    }
+
+    /// How far a ragged outline lies outside (to 1) or inside (to -1) of the solid's own where the
+    /// ray passes: foliage bulges where it is light.
+    fn bulge(&self, ray: &Ray, solid: &Solid, touch: &Touch) -> f32 {
+        let tile = &self.scene.materials[usize::from(solid.material)].tile;
+        let (u, v) = on_tile(solid, &ray.at(touch.distance_m));
+        let light = tile.sample(u, v, 2.0 * touch.half_width_m) / tile.mean();
+        (light - 1.0).clamp(-1.0, 1.0)
+    }
+
+    /// Radiance of what covers a part of a pixel.
+    fn shade(&self, ray: &Ray, cover: &Cover<'_>) -> f32 {
+        match cover.sight {
+            Sight::Solid(solid) => self.shade_solid(ray, solid, cover.distance_m),
+            Sight::Haze(haze) => self.shade_haze(ray, haze),
         }
     }
 
-    /// How far a ragged outline lies outside the solid's own where the ray passes: foliage is bulgy
-    /// where it is light.
-    fn stray(&self, ray: &Ray, solid: &Solid, touch: &Touch) -> f32 {
-        let tile = &self.scene.materials[usize::from(solid.material)].tile;
-        let (u, v) = on_tile(solid, &ray.at(touch.distance_m));
-        let bulge = tile.sample(u, v, 2.0 * touch.half_width_m) / tile.mean() - 1.0;
-        solid.ragged * touch.reach_m * bulge.clamp(-1.0, 1.0)
-    }
-
-    /// Radiance of a solid's part of a pixel.
-    fn shade(&self, ray: &Ray, cover: &Cover<'_>) -> f32 {
-        let solid = cover.solid;
+    fn shade_solid(&self, ray: &Ray, solid: &Solid, distance_m: f32) -> f32 {
         let material = &self.scene.materials[usize::from(solid.material)];
         let level = material.gain * self.levels[usize::from(material.light)];
         if material.shines {
             return level;
         }
-        let point = ray.at(cover.distance_m);
+        let point = ray.at(distance_m);
         let (u, v) = on_tile(solid, &point);
-        let footprint_m = 2.0 * ray.half_mean * cover.distance_m;
+        let footprint_m = 2.0 * ray.half_mean * distance_m;
         let normal = solid.normal(&point);
-        let above = FROM_BELOW + (1.0 - FROM_BELOW) * (0.5 + 0.5 * normal.z);
-        let light = match &self.scene.sunlight {
-            Some(sun) => {
-                let facing = normal.dot(&sun.towards).max(0.0);
-                sun.share * facing + (1.0 - sun.share) * above
-            }
-            None => above,
-        };
+        let facing = self.sunlight_towards().dot(&normal).max(0.0);
+        let light = self.light_on(facing, normal.z);
         level * light * material.tile.sample(u, v, footprint_m)
+    }
+
+    /// Light on the visible half of a ball: its mean over the disc. The sun's part is a parabola
+    /// through Lambert's sphere at full, half and new phase (2/3, 2/(3 pi), 0).
+    fn shade_haze(&self, ray: &Ray, haze: &Haze) -> f32 {
+        let phase = -ray.direction.dot(&self.sunlight_towards());
+        let facing = 0.212 + phase * (0.333 + phase * 0.121);
+        let upward = -2.0 / 3.0 * ray.direction.z;
+        self.levels[usize::from(haze.light)] * haze.radiance * self.light_on(facing, upward)
+    }
+
+    /// Light on a face that sees the sun under a cosine of `facing` and looks up by `upward`.
+    fn light_on(&self, facing: f32, upward: f32) -> f32 {
+        let above = FROM_BELOW + (1.0 - FROM_BELOW) * (0.5 + 0.5 * upward);
+        match &self.scene.sunlight {
+            Some(sun) => sun.share * facing + (1.0 - sun.share) * above,
+            None => above,
+        }
+    }
+
+    fn sunlight_towards(&self) -> Vector3<f32> {
+        let sun = self.scene.sunlight.as_ref();
+        sun.map_or_else(Vector3::zeros, |sun| sun.towards)
     }
 
     fn dome(&self, direction: &Vector3<f32>, width_rad: f32) -> f32 {
@@ -316,22 +343,26 @@ impl Viewpoint<'_> {
     }
 }
 
-/// Where on its material's tile a point of a solid lies: a slanted projection, fixed to the solid, in
-/// which no face is seen edge on.
+/// Where on its material's tile a point of a solid lies: seen along that of the solid's axes which
+/// its face is turned to most. Furrows run straight up.
 fn on_tile(solid: &Solid, point: &Vector3<f32>) -> (f32, f32) {
     let out = point - solid.centre;
+    let [x, y] = match solid.form {
+        Form::Block([cos, sin]) => [cos * out.x + sin * out.y, cos * out.y - sin * out.x],
+        Form::Column | Form::Ball => [out.x, out.y],
+    };
     // Two solids of one material differ: each has its own place on the tile.
     let place = 7.3 * solid.centre.x + 3.1 * solid.centre.y;
-    match solid.form {
-        Form::Block([cos, sin]) => {
-            let (x, y) = (cos * out.x + sin * out.y, cos * out.y - sin * out.x);
-            (x + y + place, out.z + 0.4 * y)
-        }
-        // Furrows run straight up a trunk.
-        Form::Column => (out.x + 0.6 * out.y + place, point.z),
-        Form::Ball => (
-            out.x + 0.6 * out.y + 0.4 * out.z + place,
-            out.z + 0.5 * out.y - 0.3 * out.x,
-        ),
+    let [along_x, along_y, along_z] = [
+        (x / solid.half.x).abs(),
+        (y / solid.half.y).abs(),
+        (out.z / solid.half.z).abs(),
+    ];
+    if along_z > along_x.max(along_y) && solid.form != Form::Column {
+        (x + place, y)
+    } else if along_x > along_y {
+        (y + place, out.z)
+    } else {
+        (x + place, out.z)
     }
 }

@@ -111,9 +111,13 @@ impl Solid {
             return None;
         }
         let aside_squared = (away_squared - ahead * ahead * length_squared).max(0.0);
+        let half_width_m = ray.half_mean * ahead;
+        let reach_m = radius_m * (1.0 + self.ragged) + half_width_m;
+        if aside_squared >= reach_m * reach_m {
+            return None;
+        }
         let aside_m = aside_squared.sqrt();
         let within = ((radius_m * radius_m - aside_squared).max(0.0) / length_squared).sqrt();
-        let half_width_m = ray.half_mean * ahead;
         Some(Touch {
             distance_m: ahead - within,
             half_width_m,
