@@ -16,8 +16,9 @@
 use heapless::Vec;
 
 use crate::checksum::checksum;
-use crate::field::Writer;
-use crate::message::{Message, layout::Layout};
+use crate::field::{Reader, Writer};
+use crate::kind::Kind;
+use crate::message::Message;
 use crate::refusal::Refusal;
 
 /// Longest frame: its length is one byte.
@@ -34,8 +35,8 @@ const HEADER_LEN: usize = 6;
 const CHECKSUM_LEN: usize = 2;
 /// Offset of the length byte, where the checksum begins as well.
 const LENGTH_AT: usize = 1;
-/// Offset of the byte that holds class (low nibble) and component (high nibble).
-const CLASS_AT: usize = 4;
+/// Offset of the sender's id; receiver and class follow.
+const SENDER_AT: usize = 2;
 const CLASS_MASK: u8 = 0x0f;
 const COMPONENT_SHIFT: u32 = 4;
 /// Offset of the message id.
@@ -90,7 +91,7 @@ fn encode([sender, receiver]: [u8; 2], component: u8, message: &Message) -> Enco
     let mut bytes = Encoded::new();
     let mut out = Writer(&mut bytes);
     let class = (component << COMPONENT_SHIFT) | INTERMCU;
-    for byte in [START, 0, sender, receiver, class, message.id()] {
+    for byte in [START, 0, sender, receiver, class, message.kind().id()] {
         out.u8(byte);
     }
     message.write(&mut out);
@@ -106,60 +107,101 @@ fn encode([sender, receiver]: [u8; 2], component: u8, message: &Message) -> Enco
     bytes
 }
 
-/// The frame that the bytes from a start byte on begin with, and its length; `None` while more bytes
-/// are needed to tell.
+/// What begins at a start byte.
+#[derive(Clone, Copy)]
+pub(crate) enum Judged {
+    /// Perhaps a frame; more can be said when this many bytes are there.
+    Part(u8),
+    /// A frame.
+    Whole(Claim),
+}
+
+/// Judges what `bytes`, of which the first is a start byte, begin with.
 ///
-/// A start byte inside other data claims up to 254 following bytes. Checking the header as soon as
-/// it is there keeps such a claim from holding up the good frames behind it.
-pub(crate) fn judge(bytes: &[u8]) -> Result<Option<(Frame, usize)>, Refusal> {
-    let Some(len) = judge_header(bytes)? else {
-        return Ok(None);
+/// A start byte inside other data claims up to 254 following bytes. To wait for the shortest frame
+/// before the header is judged holds nothing up; to judge it then keeps most such claims from holding
+/// up the good frames behind them.
+#[inline(never)]
+pub(crate) fn judge(bytes: &[u8]) -> Result<Judged, Refusal> {
+    let Some(header) = bytes.first_chunk() else {
+        return Ok(Judged::Part(MIN_FRAME_LEN as u8));
     };
-    let Some(frame) = bytes.get(..len) else {
-        return Ok(None);
+    let claim = Claim::of(header)?;
+    let Some(frame) = bytes.get(..usize::from(claim.len)) else {
+        return Ok(Judged::Part(claim.len));
     };
-    read_frame(frame).map(|frame| Some((frame, len)))
+    claim.check(frame)?;
+    Ok(Judged::Whole(claim))
 }
 
-/// The length that the header states; `None` as long as it is incomplete and blameless.
-fn judge_header(bytes: &[u8]) -> Result<Option<usize>, Refusal> {
-    let Some(len) = bytes.get(LENGTH_AT).map(|len| usize::from(*len)) else {
-        return Ok(None);
-    };
-    let body_len = len.checked_sub(MIN_FRAME_LEN).ok_or(Refusal::BadLength)?;
-    let Some(class) = bytes.get(CLASS_AT) else {
-        return Ok(None);
-    };
-    if class & CLASS_MASK != INTERMCU {
-        return Err(Refusal::WrongClass);
-    }
-    let Some((&[.., id], known)) = bytes.split_first_chunk::<HEADER_LEN>() else {
-        return Ok(None);
-    };
-    let layout = Layout::of(id).ok_or(Refusal::UnknownMessage)?;
-    if !layout.fits(body_len, known) {
-        return Err(Refusal::WrongSize);
-    }
-    Ok(Some(len))
+/// What a header promises.
+#[derive(Clone, Copy)]
+pub(crate) struct Claim {
+    kind: Kind,
+    /// Bytes of the whole frame.
+    len: u8,
 }
 
-/// The frame that all of `bytes` is, if the checksum holds.
-fn read_frame(bytes: &[u8]) -> Result<Frame, Refusal> {
-    let Some(([_, covered @ ..], sums)) = bytes.split_last_chunk::<CHECKSUM_LEN>() else {
-        return Err(Refusal::BadLength);
-    };
-    if checksum(covered) != *sums {
-        return Err(Refusal::BadChecksum);
+impl Claim {
+    /// Judges a header, and a first glance at the body.
+    fn of(bytes: &[u8; MIN_FRAME_LEN]) -> Result<Self, Refusal> {
+        let [_, len, _, _, class, id, ..] = *bytes;
+        if usize::from(len) < MIN_FRAME_LEN {
+            return Err(Refusal::BadLength);
+        }
+        if class & CLASS_MASK != INTERMCU {
+            return Err(Refusal::WrongClass);
+        }
+        let kind = Kind::of(id).ok_or(Refusal::UnknownMessage)?;
+        let claim = Self { kind, len };
+        let (len, fixed) = (usize::from(len), MIN_FRAME_LEN + kind.fixed_len());
+        if len != fixed && (len < fixed || !kind.has_array()) {
+            return Err(Refusal::WrongSize);
+        }
+        claim.check_count(bytes)?;
+        Ok(claim)
     }
-    let [_, sender, receiver, class, id, body @ ..] = covered else {
-        return Err(Refusal::BadLength);
-    };
-    Ok(Frame {
-        sender: *sender,
-        receiver: *receiver,
-        component: class >> COMPONENT_SHIFT,
-        message: Message::read(*id, body).ok_or(Refusal::WrongSize)?,
-    })
+
+    /// Judges what the header did not tell.
+    fn check(self, frame: &[u8]) -> Result<(), Refusal> {
+        self.check_count(frame)?;
+        match frame.split_last_chunk() {
+            Some(([_, covered @ ..], sums)) if checksum(covered) == *sums => Ok(()),
+            _ => Err(Refusal::BadChecksum),
+        }
+    }
+
+    /// Whether the length is what the array's length asks for, if there is an array and its length
+    /// is among the bytes that are known.
+    fn check_count(self, known: &[u8]) -> Result<(), Refusal> {
+        if !self.kind.has_array() {
+            return Ok(());
+        }
+        let fixed = self.kind.fixed_len();
+        match known.get(HEADER_LEN + fixed - 1) {
+            Some(count) if MIN_FRAME_LEN + fixed + usize::from(*count) != usize::from(self.len) => {
+                Err(Refusal::WrongSize)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Bytes of the whole frame.
+    pub(crate) const fn len(self) -> u8 {
+        self.len
+    }
+
+    /// The frame in `bytes` that were found to begin with it.
+    pub(crate) fn frame(self, bytes: &[u8]) -> Frame {
+        let mut header = Reader(bytes.get(SENDER_AT..).unwrap_or_default());
+        let body = HEADER_LEN..usize::from(self.len) - CHECKSUM_LEN;
+        Frame {
+            sender: header.u8(),
+            receiver: header.u8(),
+            component: header.u8() >> COMPONENT_SHIFT,
+            message: Message::read(self.kind, bytes.get(body).unwrap_or_default()),
+        }
+    }
 }
 
 #[cfg(test)]

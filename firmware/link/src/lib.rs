@@ -12,9 +12,13 @@
 //! tomvand/2020-visualhoming-crazyflie.
 #![no_std]
 
+mod body;
 mod checksum;
+mod counters;
 mod field;
 mod frame;
+mod held;
+mod kind;
 mod message;
 mod mode;
 mod parser;
@@ -22,13 +26,14 @@ mod plausible;
 mod refusal;
 pub mod world;
 
+pub use counters::Counters;
 pub use frame::{Encoded, Frame, MAX_FRAME_LEN, MIN_FRAME_LEN};
 pub use message::{
     CAMERA_CAPACITY, COMMAND_CAPACITY, Camera, Command, DEBUG_CAPACITY, Debug, InsCorrection,
     MAP_CAPACITY, Map, Message, Source, State, Vector,
 };
 pub use mode::{Mode, Record};
-pub use parser::{Counters, Event, Parser};
+pub use parser::{Event, Parser};
 pub use plausible::{Implausible, MAX_COORDINATE_M, MAX_HEADING_RAD};
 pub use refusal::{Refusal, Refused};
 pub use world::{WorldPoint, WorldPose};

@@ -1,21 +1,19 @@
-//! The messages: fields, sizes and their layout in a frame's body.
-//!
-//! Field names, order and types are those of the published message list (class `intermcu`). A body
-//! is its fields back to back, little endian; an array comes last, after a byte with its length.
+//! The messages. Field names, order and types are those of the published message list (class
+//! `intermcu`).
 
 use heapless::Vec;
 
-use crate::field::{Reader, Writer};
 use crate::frame::MAX_BODY_LEN;
+use crate::kind::Kind;
 
 /// Most bytes in a [`struct@Debug`]: what a frame of 255 bytes leaves.
-pub const DEBUG_CAPACITY: usize = MAX_BODY_LEN - layout::DEBUG.fixed;
+pub const DEBUG_CAPACITY: usize = MAX_BODY_LEN - Kind::Debug.fixed_len();
 /// Most arguments of a [`Command`]: what a frame of 255 bytes leaves.
-pub const COMMAND_CAPACITY: usize = MAX_BODY_LEN - layout::COMMAND.fixed;
+pub const COMMAND_CAPACITY: usize = MAX_BODY_LEN - Kind::Command.fixed_len();
 /// Most coefficients in a [`Map`]: what a frame of 255 bytes leaves.
-pub const MAP_CAPACITY: usize = MAX_BODY_LEN - layout::MAP.fixed;
+pub const MAP_CAPACITY: usize = MAX_BODY_LEN - Kind::Map.fixed_len();
 /// Most coefficients in a [`Camera`]: what a frame of 255 bytes leaves.
-pub const CAMERA_CAPACITY: usize = MAX_BODY_LEN - layout::CAMERA.fixed;
+pub const CAMERA_CAPACITY: usize = MAX_BODY_LEN - Kind::Camera.fixed_len();
 
 /// IMCU_DEBUG: bytes for a person to read. Nobody in the system sends or reads it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -155,185 +153,22 @@ pub enum Message {
     Camera(Camera),
 }
 
-/// How long the body of each message is.
-pub(crate) mod layout {
-    /// The body of one kind of message.
-    #[derive(Clone, Copy)]
-    pub(crate) struct Layout {
-        /// Bytes of the scalar fields and of the array's length byte.
-        pub(crate) fixed: usize,
-        /// Whether the last fixed byte is the length of an array of bytes that follows.
-        pub(crate) array: bool,
-    }
-
-    pub(crate) const DEBUG: Layout = Layout::with_array(0);
-    pub(crate) const COMMAND: Layout = Layout::with_array(1);
-    pub(crate) const VECTOR: Layout = Layout::scalars(5 * 4 + 1);
-    pub(crate) const STATE: Layout = Layout::scalars(5 * 4);
-    pub(crate) const MAP: Layout = Layout::with_array(2 * (2 + 2 * 4));
-    pub(crate) const INS_CORRECTION: Layout = Layout::scalars(2 + 6 * 4);
-    pub(crate) const CAMERA: Layout = Layout::with_array(0);
-
-    impl Layout {
-        const fn scalars(fixed: usize) -> Self {
-            let array = false;
-            Self { fixed, array }
-        }
-
-        const fn with_array(scalars: usize) -> Self {
-            Self {
-                fixed: scalars + 1,
-                array: true,
-            }
-        }
-
-        /// The layout of message `id`; `None` if the link has no such message.
-        pub(crate) const fn of(id: u8) -> Option<Self> {
-            match id {
-                super::id::DEBUG => Some(DEBUG),
-                super::id::COMMAND => Some(COMMAND),
-                super::id::VECTOR => Some(VECTOR),
-                super::id::STATE => Some(STATE),
-                super::id::MAP => Some(MAP),
-                super::id::INS_CORRECTION => Some(INS_CORRECTION),
-                super::id::CAMERA => Some(CAMERA),
-                _ => None,
-            }
-        }
-
-        /// Whether a body of `len` bytes that starts with `known` can be this message.
-        pub(crate) fn fits(self, len: usize, known: &[u8]) -> bool {
-            match (self.array, known.get(self.fixed - 1)) {
-                (false, _) => len == self.fixed,
-                (true, Some(count)) => len == self.fixed + usize::from(*count),
-                (true, None) => len >= self.fixed,
-            }
-        }
-    }
-}
-
-/// Message ids of the class.
-mod id {
-    pub(super) const DEBUG: u8 = 5;
-    pub(super) const COMMAND: u8 = 6;
-    pub(super) const VECTOR: u8 = 9;
-    pub(super) const STATE: u8 = 10;
-    pub(super) const MAP: u8 = 11;
-    pub(super) const INS_CORRECTION: u8 = 12;
-    pub(super) const CAMERA: u8 = 15;
-}
-
-/// What message `id` is called; `None` if the link has no such message.
-pub(crate) const fn name(id: u8) -> Option<&'static str> {
-    Some(match id {
-        id::DEBUG => "DEBUG",
-        id::COMMAND => "COMMAND",
-        id::VECTOR => "VECTOR",
-        id::STATE => "STATE",
-        id::MAP => "MAP",
-        id::INS_CORRECTION => "INS_CORRECTION",
-        id::CAMERA => "CAMERA",
-        _ => return None,
-    })
-}
-
 impl Message {
     /// What the message is called: its name in the published list without the prefix.
     pub const fn name(&self) -> &'static str {
-        match name(self.id()) {
-            Some(name) => name,
-            None => "?",
-        }
+        self.kind().name()
     }
 
-    /// The message id in the frame's header.
-    pub(crate) const fn id(&self) -> u8 {
+    /// Which message it is.
+    pub(crate) const fn kind(&self) -> Kind {
         match self {
-            Self::Debug(_) => id::DEBUG,
-            Self::Command(_) => id::COMMAND,
-            Self::Vector(_) => id::VECTOR,
-            Self::State(_) => id::STATE,
-            Self::Map(_) => id::MAP,
-            Self::InsCorrection(_) => id::INS_CORRECTION,
-            Self::Camera(_) => id::CAMERA,
+            Self::Debug(_) => Kind::Debug,
+            Self::Command(_) => Kind::Command,
+            Self::Vector(_) => Kind::Vector,
+            Self::State(_) => Kind::State,
+            Self::Map(_) => Kind::Map,
+            Self::InsCorrection(_) => Kind::InsCorrection,
+            Self::Camera(_) => Kind::Camera,
         }
-    }
-
-    /// Appends the fields to a frame.
-    pub(crate) fn write(&self, out: &mut Writer<'_>) {
-        match self {
-            Self::Debug(m) => out.bytes(&m.msg),
-            Self::Command(m) => {
-                out.u8(m.command);
-                out.bytes(&m.args);
-            }
-            Self::Vector(m) => {
-                out.f32s([m.target_e, m.target_n, m.delta_yaw, m.start_e, m.start_n]);
-                out.u8(m.source);
-            }
-            Self::State(m) => out.f32s([m.ins_e, m.ins_n, m.phi, m.theta, m.psi]),
-            Self::Map(m) => {
-                out.u16(m.snapshot_index);
-                out.f32s([m.snapshot_e, m.snapshot_n]);
-                out.u16(m.odometry_index);
-                out.f32s([m.odometry_e, m.odometry_n]);
-                out.i8s(&m.snapshot_ak_bk);
-            }
-            Self::InsCorrection(m) => {
-                out.u16(m.snapshot_index);
-                out.f32s([m.e_from, m.n_from, m.psi_from, m.e_to, m.n_to, m.psi_to]);
-            }
-            Self::Camera(m) => out.i8s(&m.snapshot_ak_bk),
-        }
-    }
-
-    /// Reads the fields of message `id`; `None` if the body is not exactly that message.
-    pub(crate) fn read(id: u8, body: &[u8]) -> Option<Self> {
-        let mut body = Reader(body);
-        let message = match id {
-            id::DEBUG => Self::Debug(Debug { msg: body.bytes()? }),
-            id::COMMAND => Self::Command(Command {
-                command: body.u8()?,
-                args: body.bytes()?,
-            }),
-            id::VECTOR => Self::Vector(Vector {
-                target_e: body.f32()?,
-                target_n: body.f32()?,
-                delta_yaw: body.f32()?,
-                start_e: body.f32()?,
-                start_n: body.f32()?,
-                source: body.u8()?,
-            }),
-            id::STATE => Self::State(State {
-                ins_e: body.f32()?,
-                ins_n: body.f32()?,
-                phi: body.f32()?,
-                theta: body.f32()?,
-                psi: body.f32()?,
-            }),
-            id::MAP => Self::Map(Map {
-                snapshot_index: body.u16()?,
-                snapshot_e: body.f32()?,
-                snapshot_n: body.f32()?,
-                odometry_index: body.u16()?,
-                odometry_e: body.f32()?,
-                odometry_n: body.f32()?,
-                snapshot_ak_bk: body.i8s()?,
-            }),
-            id::INS_CORRECTION => Self::InsCorrection(InsCorrection {
-                snapshot_index: body.u16()?,
-                e_from: body.f32()?,
-                n_from: body.f32()?,
-                psi_from: body.f32()?,
-                e_to: body.f32()?,
-                n_to: body.f32()?,
-                psi_to: body.f32()?,
-            }),
-            id::CAMERA => Self::Camera(Camera {
-                snapshot_ak_bk: body.i8s()?,
-            }),
-            _ => return None,
-        };
-        body.0.is_empty().then_some(message)
     }
 }

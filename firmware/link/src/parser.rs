@@ -1,50 +1,9 @@
 //! From received bytes to frames, whatever else is on the wire.
 
-use heapless::Vec;
-
-use crate::frame::{Frame, ID_AT, MAX_FRAME_LEN, START, judge};
+use crate::counters::Counters;
+use crate::frame::{Claim, Frame, Judged, MIN_FRAME_LEN, START, judge};
+use crate::held::Held;
 use crate::refusal::{Refusal, Refused};
-
-/// How often each thing happened since the parser was made. Saturating.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Counters {
-    /// Frames delivered.
-    pub frames_ok: u32,
-    /// Bytes that belonged to no delivered frame.
-    pub bytes_skipped: u32,
-    /// Start bytes refused for [`Refusal::BadLength`].
-    pub bad_length: u32,
-    /// Start bytes refused for [`Refusal::WrongClass`].
-    pub wrong_class: u32,
-    /// Start bytes refused for [`Refusal::UnknownMessage`].
-    pub unknown_message: u32,
-    /// Start bytes refused for [`Refusal::WrongSize`].
-    pub wrong_size: u32,
-    /// Start bytes refused for [`Refusal::BadChecksum`].
-    pub bad_checksum: u32,
-    /// Start bytes refused for [`Refusal::CutShort`].
-    pub cut_short: u32,
-}
-
-impl Counters {
-    fn refuse(&mut self, refusal: Refusal) {
-        let counter = match refusal {
-            Refusal::BadLength => &mut self.bad_length,
-            Refusal::WrongClass => &mut self.wrong_class,
-            Refusal::UnknownMessage => &mut self.unknown_message,
-            Refusal::WrongSize => &mut self.wrong_size,
-            Refusal::BadChecksum => &mut self.bad_checksum,
-            Refusal::CutShort => &mut self.cut_short,
-        };
-        *counter = counter.saturating_add(1);
-    }
-
-    fn skip(&mut self, bytes: usize) {
-        let bytes = u32::try_from(bytes).unwrap_or(u32::MAX);
-        self.bytes_skipped = self.bytes_skipped.saturating_add(bytes);
-    }
-}
 
 /// What the parser found: every start byte that is not inside a frame makes one of the two.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,33 +26,40 @@ pub enum Event {
 /// so no good frame is lost behind, or inside, a broken one. (The generated C receiver of pprzlink
 /// continues after the bytes that the broken frame claimed.)
 ///
-/// Every byte is in the end either part of a delivered frame or counted as skipped. The work per
-/// received byte is bounded: each start byte is refused once and summed over at most once.
-#[derive(Debug, Default)]
+/// Every byte is in the end either part of a delivered frame or counted as skipped. The parser
+/// does not allocate, nor panic, and its work is bounded: each start byte is refused once, its claim
+/// summed over once.
+///
+/// Frames are read where the caller has them; only of one that the end of the caller's bytes cuts,
+/// the beginning is held. So give it bytes in pieces as large as they come.
+///
+/// A frame is 264 bytes to move. What makes one is not inlined, so that it is made where the caller
+/// wants it, and so that the loops around it fit into the instruction cache (1 KB on an STM32F4).
+#[derive(Debug)]
 pub struct Parser {
     /// Empty, or a start byte and what came after it while it can still become a frame.
-    held: Vec<u8, MAX_FRAME_LEN>,
+    held: Held,
+    /// With how many bytes held more can be said.
+    wanted: u8,
     /// Whether no more bytes will come to what is held.
     ended: bool,
     counters: Counters,
+}
+
+impl Default for Parser {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Parser {
     /// A parser that has seen nothing.
     pub const fn new() -> Self {
         Self {
-            held: Vec::new(),
+            held: Held::new(),
+            wanted: 0,
             ended: false,
-            counters: Counters {
-                frames_ok: 0,
-                bytes_skipped: 0,
-                bad_length: 0,
-                wrong_class: 0,
-                unknown_message: 0,
-                wrong_size: 0,
-                bad_checksum: 0,
-                cut_short: 0,
-            },
+            counters: Counters::NONE,
         }
     }
 
@@ -101,18 +67,10 @@ impl Parser {
     ///
     /// `bytes` is moved past what was taken: call again until `None`, then all of it has been taken.
     pub fn next_event(&mut self, bytes: &mut &[u8]) -> Option<Event> {
-        loop {
-            if let Some(event) = self.settle() {
-                return Some(event);
-            }
-            let (byte, rest) = bytes.split_first()?;
-            *bytes = rest;
-            if self.held.is_empty() && *byte != START {
-                self.counters.skip(1);
-            } else if self.held.push(*byte).is_err() {
-                debug_assert!(false, "255 held bytes are a frame or are refused");
-                self.drop_start();
-            }
+        if self.held.is_empty() {
+            self.next_in_place(bytes)
+        } else {
+            self.next_held(bytes)
         }
     }
 
@@ -143,7 +101,7 @@ impl Parser {
 
     /// How many bytes of a frame that is not complete yet are held.
     pub fn held(&self) -> usize {
-        self.held.len()
+        usize::from(self.held.len())
     }
 
     /// What has been received so far.
@@ -151,52 +109,89 @@ impl Parser {
         self.counters
     }
 
-    /// Decides about the held start byte; `None` if there is none or more bytes are needed.
-    fn settle(&mut self) -> Option<Event> {
-        if self.held.is_empty() {
-            self.ended = false;
+    /// Looks for an event in bytes before which nothing is held.
+    #[inline(never)]
+    fn next_in_place(&mut self, bytes: &mut &[u8]) -> Option<Event> {
+        let start = bytes.iter().position(|byte| *byte == START);
+        let (unframed, framed) = bytes.split_at(start.unwrap_or(bytes.len()));
+        self.counters.skip(unframed.len());
+        *bytes = framed;
+        if framed.is_empty() {
             return None;
         }
-        let why = match judge(&self.held) {
-            Ok(Some((frame, len))) => {
-                self.counters.frames_ok = self.counters.frames_ok.saturating_add(1);
-                self.drop_front(len);
-                self.seek();
-                return Some(Event::Frame(frame));
+        match judge(framed) {
+            Ok(Judged::Whole(claim)) => {
+                *bytes = framed.get(usize::from(claim.len())..).unwrap_or_default();
+                Some(Event::Frame(self.deliver(claim, framed)))
             }
-            Ok(None) if self.ended => Refusal::CutShort,
-            Ok(None) => return None,
-            Err(refusal) => refusal,
-        };
-        let message_id = match why {
-            // Refused, in most cases, before the id is there: then in all, so that what is reported
-            // does not depend on how the stream was cut.
-            Refusal::BadLength | Refusal::WrongClass => None,
-            _ => self.held.get(ID_AT).copied(),
-        };
+            Ok(Judged::Part(wanted)) => {
+                self.wanted = wanted;
+                self.held.fill(wanted, bytes);
+                None
+            }
+            Err(why) => {
+                *bytes = framed.get(1..).unwrap_or_default();
+                self.counters.refuse(why);
+                Some(Event::Refused(Refused::new(why, framed)))
+            }
+        }
+    }
+
+    /// Looks for an event in what is held and as many bytes behind it as that takes.
+    fn next_held(&mut self, bytes: &mut &[u8]) -> Option<Event> {
+        loop {
+            if !self.ended {
+                self.held.fill(self.wanted, bytes);
+                if self.held.len() < self.wanted {
+                    return None;
+                }
+            }
+            match judge(self.held.bytes()) {
+                Ok(Judged::Whole(claim)) => return Some(Event::Frame(self.deliver_held(claim))),
+                Ok(Judged::Part(wanted)) if !self.ended => self.wanted = wanted,
+                Ok(Judged::Part(_)) => {
+                    return Some(Event::Refused(self.refuse_held(Refusal::CutShort)));
+                }
+                Err(why) => return Some(Event::Refused(self.refuse_held(why))),
+            }
+        }
+    }
+
+    /// A frame that `bytes` begin with.
+    #[inline(never)]
+    fn deliver(&mut self, claim: Claim, bytes: &[u8]) -> Frame {
+        self.counters.deliver();
+        claim.frame(bytes)
+    }
+
+    /// The frame that is held.
+    #[inline(never)]
+    fn deliver_held(&mut self, claim: Claim) -> Frame {
+        let frame = claim.frame(self.held.bytes());
+        self.counters.deliver();
+        self.drop_held(claim.len());
+        frame
+    }
+
+    /// Refuses the start byte that is held.
+    #[inline(never)]
+    fn refuse_held(&mut self, why: Refusal) -> Refused {
+        let refused = Refused::new(why, self.held.bytes());
         self.counters.refuse(why);
-        self.drop_start();
-        Some(Event::Refused(Refused { why, message_id }))
+        self.drop_held(1);
+        refused
     }
 
-    /// Skips the held start byte and what follows it up to the next one.
-    fn drop_start(&mut self) {
-        self.drop_front(1);
-        self.counters.skip(1);
-        self.seek();
-    }
-
-    /// Skips held bytes up to the first start byte.
-    fn seek(&mut self) {
-        let start = self.held.iter().position(|byte| *byte == START);
-        let unframed = start.unwrap_or(self.held.len());
-        self.drop_front(unframed);
+    /// Drops bytes from the front of what is held, and skips the following up to a start byte.
+    fn drop_held(&mut self, len: u8) {
+        self.held.drop_front(len);
+        let mut held = self.held.bytes().iter();
+        let start = held.position(|byte| *byte == START);
+        let unframed = start.unwrap_or(self.held.bytes().len());
         self.counters.skip(unframed);
-    }
-
-    fn drop_front(&mut self, len: usize) {
-        let rest = self.held.get(len..).unwrap_or_default();
-        self.held = Vec::from_slice(rest).unwrap_or_default();
+        self.held.drop_front(unframed as u8);
+        self.wanted = MIN_FRAME_LEN as u8;
+        self.ended &= !self.held.is_empty();
     }
 }
 
@@ -266,8 +261,8 @@ mod tests {
                 event => panic!("{event:?}"),
             }
         };
-        assert_eq!(refused(1, 7), ("?", "length"));
-        assert_eq!(refused(4, 4), ("?", "class"));
+        assert_eq!(refused(1, 7), ("VECTOR", "length"));
+        assert_eq!(refused(4, 4), ("VECTOR", "class"));
         assert_eq!(refused(5, 16), ("?", "unknown message"));
         assert_eq!(refused(1, 30), ("VECTOR", "size"));
         assert_eq!(refused(20, 1), ("VECTOR", "checksum"));

@@ -1,6 +1,7 @@
 //! What the parser drops, and why.
 
-use crate::message;
+use crate::frame::ID_AT;
+use crate::kind::Kind;
 
 /// Why no frame of this link begins at a start byte.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,15 +41,21 @@ impl Refusal {
 pub struct Refused {
     /// What is wrong with the bytes that follow.
     pub why: Refusal,
-    /// The message id that the header states; `None` where the header was refused, or ended, before
-    /// it was read. It may be the broken byte itself.
+    /// The message id that the header states; `None` where the header was cut short before it. It
+    /// may be the broken byte itself.
     pub message_id: Option<u8>,
 }
 
 impl Refused {
+    /// What is refused begins with these bytes.
+    pub(crate) fn new(why: Refusal, bytes: &[u8]) -> Self {
+        let message_id = bytes.get(ID_AT).copied();
+        Self { why, message_id }
+    }
+
     /// The name of the message that the header states ([`crate::Message::name`]); `"?"` where it
     /// states none, or an id that no message has.
     pub fn message_name(&self) -> &'static str {
-        self.message_id.and_then(message::name).unwrap_or("?")
+        self.message_id.and_then(Kind::of).map_or("?", Kind::name)
     }
 }

@@ -161,18 +161,20 @@ pub fn frames_in_ended(stream: &[u8]) -> Vec<Vec<u8>> {
     frames
 }
 
-/// Length of the frame that begins here; 0 if none does, `None` if the stream ends too early.
+/// Length of the frame that begins here; 0 if none does, `None` if the stream ends too early. A
+/// header counts as too early until the shortest frame would be complete, an array's length that
+/// comes behind that until the whole frame is.
 fn frame_len(bytes: &[u8]) -> Option<usize> {
-    let at = |offset: usize| bytes.get(offset).copied();
-    if at(0)? != 0x99 {
+    if *bytes.first()? != 0x99 {
         return Some(0);
     }
-    let len = usize::from(at(1)?);
-    if len < MIN_FRAME_LEN || at(4)? & 0x0f != 5 {
+    let header = bytes.get(..MIN_FRAME_LEN)?;
+    let len = usize::from(header[1]);
+    if len < MIN_FRAME_LEN || header[4] & 0x0f != 5 {
         return Some(0);
     }
-    // Message id, bytes of a frame without its array, offset of the array's length byte.
-    let (shortest, array_at) = match at(5)? {
+    // Bytes of a frame without its array, offset of the array's length.
+    let (shortest, array_at) = match header[5] {
         5 | 15 => (9, Some(6)),
         6 => (10, Some(7)),
         9 => (29, None),
@@ -181,17 +183,18 @@ fn frame_len(bytes: &[u8]) -> Option<usize> {
         12 => (34, None),
         _ => return Some(0),
     };
-    if len < shortest {
-        return Some(0);
-    }
-    let array = match array_at {
-        Some(offset) => usize::from(at(offset)?),
-        None => 0,
+    let possible = match array_at {
+        None => len == shortest,
+        Some(at) if at < MIN_FRAME_LEN => len == shortest + usize::from(header[at]),
+        Some(_) => len >= shortest,
     };
-    if len != shortest + array {
+    if !possible {
         return Some(0);
     }
     let frame = bytes.get(..len)?;
+    if array_at.is_some_and(|at| len != shortest + usize::from(frame[at])) {
+        return Some(0);
+    }
     let (mut a, mut b) = (0u32, 0u32);
     for byte in &frame[1..len - 2] {
         a = (a + u32::from(*byte)) % 256;
