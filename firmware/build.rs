@@ -10,5 +10,6 @@ fn main() {
     // --nmagic: sections need no page alignment on a microcontroller.
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo:rustc-link-arg-bins={argument}");
+        println!("cargo:rustc-link-arg-examples={argument}");
     }
 }

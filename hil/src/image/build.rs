@@ -45,6 +45,18 @@ pub fn workspace_root() -> Result<PathBuf, BuildError> {
 
 /// Builds the firmware, or finds that it is up to date. `say` hears what is going on.
 pub fn build(say: &dyn Fn(&str)) -> Result<PathBuf, BuildError> {
+    let folder = build_target(&["--bin", "firmware"], say)?;
+    Ok(folder.join("firmware"))
+}
+
+/// Builds one of the firmware's examples: an image that tries a part of it by itself.
+pub fn build_example(name: &str, say: &dyn Fn(&str)) -> Result<PathBuf, BuildError> {
+    let folder = build_target(&["--example", name], say)?;
+    Ok(folder.join("examples").join(name))
+}
+
+/// Builds a cargo target of the firmware's package; the folder of the profile's images.
+fn build_target(target: &[&str], say: &dyn Fn(&str)) -> Result<PathBuf, BuildError> {
     let workspace = workspace_root()?;
     let toolchain = Toolchain::find(&workspace, say)?;
     say(&format!("building the firmware with {toolchain}"));
@@ -66,13 +78,14 @@ pub fn build(say: &dyn Fn(&str)) -> Result<PathBuf, BuildError> {
             "--target-dir",
         ])
         .arg(&target_dir)
+        .args(target)
         .envs(toolchain.environment())
         // The rig reads the log by machine: the level is the checkout's, not the shell's.
         .env_remove("DEFMT_LOG")
         .stdin(Stdio::null())
         .output()?;
     if output.status.success() {
-        Ok(target_dir.join(TARGET).join(PROFILE).join("firmware"))
+        Ok(target_dir.join(TARGET).join(PROFILE))
     } else {
         Err(BuildError::Failed {
             toolchain,

@@ -3,7 +3,7 @@
 mod build;
 mod toolchain;
 
-pub use build::{BuildError, build, workspace_root};
+pub use build::{BuildError, build, build_example, workspace_root};
 pub use toolchain::{Toolchain, ToolchainError};
 
 /// The chip's target: Cortex-M4 with a single-precision FPU, hard-float calls.
