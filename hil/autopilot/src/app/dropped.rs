@@ -22,6 +22,8 @@ pub struct Dropped {
 pub enum DropReason {
     /// It is broken, or no frame of this link.
     Refused(Refusal),
+    /// No start byte stood in front of it.
+    NoStart,
     /// The receive buffer was full when it, or a part of it, arrived.
     BufferFull,
     /// It was the message of the last receive call of a cycle.
@@ -36,6 +38,7 @@ impl fmt::Display for DropReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Refused(refusal) => write!(f, "refused: {}", refusal.name()),
+            Self::NoStart => f.write_str("no start byte"),
             Self::BufferFull => f.write_str("the receive buffer was full"),
             Self::TenthMessage => f.write_str("tenth message of a cycle"),
             Self::Swallowed => f.write_str("swallowed by a broken frame"),

@@ -75,11 +75,21 @@ impl Ledger {
 
     /// The app's receiver has refused these bytes.
     pub fn refused(&mut self, now_ms: u64, span: Span, refused: Refused) {
+        let why = DropReason::Refused(refused.why);
+        self.unusable(now_ms, refused.message_name(), span, why);
+    }
+
+    /// The app's receiver has found no start byte in these bytes.
+    pub fn noise(&mut self, now_ms: u64, span: Span) {
+        self.unusable(now_ms, "?", span, DropReason::NoStart);
+    }
+
+    /// Bytes of no use; unless they are the rest of a frame that is reported already.
+    fn unusable(&mut self, now_ms: u64, message: &'static str, span: Span, why: DropReason) {
         self.forget_cut(span.start);
         let reported = self.cut.front().is_some_and(|cut| cut.start <= span.start);
         if !reported {
-            let why = DropReason::Refused(refused.why);
-            self.report(now_ms, refused.message_name(), span, why);
+            self.report(now_ms, message, span, why);
         }
     }
 

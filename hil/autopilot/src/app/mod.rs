@@ -22,6 +22,7 @@
 mod camera;
 mod correction;
 mod dropped;
+mod experiment;
 mod flight_app;
 mod goal;
 mod handshake;
@@ -46,6 +47,7 @@ mod tests;
 
 pub use camera::{Counters, Received};
 pub use dropped::{DropReason, Dropped};
+pub use experiment::Experiment;
 pub use flight_app::{FlightApp, Output};
 pub use phase::{Outcome, Phase};
 pub use quirks::Quirks;

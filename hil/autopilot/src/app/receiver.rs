@@ -25,6 +25,8 @@ pub enum Found {
     Message(Span, Box<Message>),
     /// Bytes from a start byte on that are none.
     Refused(Span, Refused),
+    /// Bytes outside any frame, behind a message: without a start byte nothing is seen of a frame.
+    Noise(Span),
 }
 
 /// What finds messages.
@@ -63,27 +65,65 @@ impl Receiver {
     }
 }
 
+/// Bytes outside any frame. Those right behind bytes that were refused are their rest, and not told
+/// of again.
+#[derive(Debug, Default)]
+struct Noise {
+    run: Option<Span>,
+    is_rest: bool,
+}
+
+impl Noise {
+    fn extend(&mut self, number: u64) {
+        if !self.is_rest {
+            let start = self.run.map_or(number, |run| run.start);
+            let end = number + 1;
+            self.run = Some(Span { start, end });
+        }
+    }
+
+    /// A start byte has come: the noise in front of it, if there was any.
+    fn end(&mut self) -> Option<Found> {
+        self.run.take().map(Found::Noise)
+    }
+
+    /// Something has been found: noise begins afresh behind it.
+    fn follow(&mut self, found: &Found) {
+        self.is_rest = matches!(found, Found::Refused(..));
+    }
+}
+
 /// The published receiver, with the place of the frame that it is in.
 #[derive(Debug, Default)]
 pub struct Published {
     receiver: PublishedReceiver,
-    /// Number of the start byte; `None` between frames.
-    start: Option<u64>,
+    /// Number of the start byte.
+    start: u64,
+    noise: Noise,
 }
 
 impl Published {
     fn next(&mut self, bytes: &mut VecDeque<NumberedByte>) -> Option<Found> {
         while let Some((number, byte)) = bytes.pop_front() {
-            let start = *self.start.get_or_insert(number);
-            let found = self.receiver.push(byte).map(|reception| {
-                let end = number + 1;
-                found(Span { start, end }, reception)
-            });
-            if self.receiver.wait() == Wait::Start {
-                self.start = None;
+            let between = self.receiver.wait() == Wait::Start;
+            let reception = self.receiver.push(byte);
+            let end = number + 1;
+            let start = self.start;
+            if let Some(reception) = reception {
+                let found = found(Span { start, end }, reception);
+                self.noise.follow(&found);
+                return Some(found);
             }
-            if found.is_some() {
-                return found;
+            if !between {
+                continue;
+            }
+            if self.receiver.wait() == Wait::Start {
+                self.noise.extend(number);
+            } else {
+                self.start = number;
+                if let Some(noise) = self.noise.end() {
+                    return Some(noise);
+                }
             }
         }
         None
@@ -106,43 +146,132 @@ fn found(span: Span, reception: Reception<'_>) -> Found {
 #[derive(Debug, Default)]
 pub struct Strict {
     parser: Parser,
-    /// The bytes that the parser holds: from a start byte on.
+    /// Numbers of the bytes that the parser holds: from a start byte on.
     held: VecDeque<u64>,
+    noise: Noise,
 }
 
 impl Strict {
     /// As [`Receiver::next`].
     pub fn next(&mut self, bytes: &mut VecDeque<NumberedByte>) -> Option<Found> {
-        if let Some(found) = self.settle(&[]) {
+        if let Some(found) = self.settle() {
             return Some(found);
         }
         while let Some((number, byte)) = bytes.pop_front() {
             self.held.push_back(number);
-            if let Some(found) = self.settle(&[byte]) {
-                return Some(found);
+            if let Some(event) = self.parser.next_event(&mut &[byte][..]) {
+                return self.found(event);
+            }
+            if self.parser.held() == 0 {
+                self.held.clear();
+                self.noise.extend(number);
+            } else if let Some(noise) = self.noise.end() {
+                return Some(noise);
             }
         }
         None
     }
 
-    /// What the parser makes of the next byte, or, without one, of what it holds.
-    fn settle(&mut self, mut byte: &[u8]) -> Option<Found> {
-        let event = self.parser.next_event(&mut byte);
+    /// What the parser makes of what it holds.
+    fn settle(&mut self) -> Option<Found> {
+        let event = self.parser.next_event(&mut &[][..])?;
+        self.found(event)
+    }
+
+    /// An event, with its place: it begins with the first byte held.
+    fn found(&mut self, event: Event) -> Option<Found> {
+        let decided = self.held.len() - self.parser.held();
         let len = match &event {
-            Some(Event::Frame(frame)) => frame.encode().len(),
-            _ => self.held.len() - self.parser.held(),
+            Event::Frame(frame) => frame.encode().len(),
+            Event::Refused(_) => decided,
         };
-        let span = self.held.front().map(|start| Span {
-            start: *start,
-            end: self
-                .held
-                .get(len.saturating_sub(1))
-                .map_or(*start, |last| last + 1),
-        });
-        self.held.drain(..self.held.len() - self.parser.held());
-        match (event?, span?) {
-            (Event::Frame(frame), span) => Some(Found::Message(span, Box::new(frame.message))),
-            (Event::Refused(refused), span) => Some(Found::Refused(span, refused)),
-        }
+        let start = *self.held.front()?;
+        let end = *self.held.get(len.checked_sub(1)?)? + 1;
+        self.held.drain(..decided);
+        let span = Span { start, end };
+        let found = match event {
+            Event::Frame(frame) => Found::Message(span, Box::new(frame.message)),
+            Event::Refused(refused) => Found::Refused(span, refused),
+        };
+        self.noise.follow(&found);
+        Some(found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::VecDeque;
+
+    use link::{Command, Message, Refusal};
+
+    use super::{Found, Published, Receiver, Span, Strict};
+
+    /// What is found in a stream: the spans of messages, and of the rest with the reason.
+    fn found(mut receiver: Receiver, stream: &[u8]) -> Vec<(Span, &'static str)> {
+        let mut bytes: VecDeque<_> = (0..).zip(stream.iter().copied()).collect();
+        let next = || receiver.next(&mut bytes);
+        std::iter::from_fn(next)
+            .map(|found| match found {
+                Found::Message(span, message) => (span, message.name()),
+                Found::Refused(span, refused) => (span, refused.why.name()),
+                Found::Noise(span) => (span, "noise"),
+            })
+            .collect()
+    }
+
+    fn span(start: u64, end: u64) -> Span {
+        Span { start, end }
+    }
+
+    fn receivers() -> [Receiver; 2] {
+        [
+            Receiver::Published(Published::default()),
+            Receiver::Strict(Strict::default()),
+        ]
+    }
+
+    fn follow() -> Vec<u8> {
+        let command = 0x12;
+        let args = link::Command::default().args;
+        Message::Command(Command { command, args })
+            .encode()
+            .to_vec()
+    }
+
+    #[test]
+    fn messages_and_what_lies_between_them_have_their_places() {
+        let mut broken = follow();
+        broken[6] ^= 1;
+        let mut headless = follow();
+        headless[0] = 0;
+        let stream = [follow(), headless, follow(), broken, vec![7, 7], follow()].concat();
+        let expected = [
+            (span(0, 10), "COMMAND"),
+            (span(10, 20), "noise"),
+            (span(20, 30), "COMMAND"),
+            // The first sum is found wrong, or all of it; its rest is not told of again.
+            (span(30, 39), Refusal::BadChecksum.name()),
+            (span(42, 52), "COMMAND"),
+        ];
+        let [published, strict] = receivers();
+        assert_eq!(found(published, &stream), expected);
+        let strict = found(strict, &stream);
+        assert_eq!(strict[..3], expected[..3]);
+        assert_eq!(strict[3], (span(30, 40), Refusal::BadChecksum.name()));
+        assert_eq!(strict[4..], expected[4..]);
+    }
+
+    #[test]
+    fn behind_a_false_start_the_published_receiver_loses_what_the_strict_one_finds() {
+        // Claims 12 bytes: itself, its length and the next ten.
+        let stream = [vec![0x99, 12], follow(), follow()].concat();
+        let [published, strict] = receivers();
+        let last = (span(12, 22), "COMMAND");
+        assert_eq!(
+            found(published, &stream),
+            [(span(0, 11), Refusal::BadChecksum.name()), last]
+        );
+        let strict = found(strict, &stream);
+        assert_eq!(strict[1..], [(span(2, 12), "COMMAND"), last]);
     }
 }

@@ -76,6 +76,11 @@ impl Route {
 
     /// The S of the paper's Fig. 6: 20 m, flown twice, 40 m in all.
     pub fn s() -> Self {
+        Self::s_passes(2)
+    }
+
+    /// The same S, every second pass backwards.
+    pub fn s_passes(passes: usize) -> Self {
         let places = [
             (0.0, 0.0),
             (-5.0, 0.0),
@@ -84,7 +89,13 @@ impl Route {
             (0.0, 5.0),
             (-5.0, 5.0),
         ];
-        Self::passes(&north_east(places), 2)
+        Self::passes(&north_east(places), passes)
+    }
+
+    /// `rounds` times south and back. (The published corridor experiment flies ten times 6 m, north.)
+    pub fn corridor(length_m: f32, rounds: usize) -> Self {
+        let places = [(0.0, 0.0), (-length_m, 0.0)];
+        Self::passes(&north_east(places), 2 * rounds)
     }
 
     /// Straight north.

@@ -117,9 +117,23 @@ impl Script {
         ];
         Self { steps }
     }
+
+    /// Go on following a route that the camera still knows, home: for an operator who starts again
+    /// after the autopilot has restarted on the way back. Says nothing but follow; a camera that
+    /// follows already takes that for a retransmission and goes on where it was.
+    pub fn resume() -> Self {
+        let follow = Step::Follow {
+            mode: Mode::Follow,
+            until: Until::Home,
+        };
+        Self {
+            steps: vec![follow],
+        }
+    }
 }
 
-fn command(mode: Mode, args: &[u8]) -> Step {
+/// A command and the wait for its echo.
+pub(super) fn command(mode: Mode, args: &[u8]) -> Step {
     Step::Command {
         mode,
         args: args.to_vec(),

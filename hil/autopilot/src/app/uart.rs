@@ -74,6 +74,10 @@ impl Uart {
                     self.ledger.refused(now_ms, span, refused);
                     continue;
                 }
+                Some(Found::Noise(span)) => {
+                    self.ledger.noise(now_ms, span);
+                    continue;
+                }
                 Some(Found::Message(span, message)) => {
                     self.ledger.found(now_ms, span);
                     let message = *message;

@@ -2,6 +2,8 @@
 
 mod exchange;
 mod flights;
+mod operator;
+mod quirks;
 
 use link::{Command, Message, Mode, Parser, Vector};
 use nalgebra::{SVector, UnitQuaternion, Vector3};
