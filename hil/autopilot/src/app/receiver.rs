@@ -33,9 +33,9 @@ pub enum Found {
 #[derive(Debug)]
 pub enum Receiver {
     /// As the real app does.
-    Published(Published),
+    Published(Box<Published>),
     /// Strictly, and searching again where it failed.
-    Strict(Strict),
+    Strict(Box<Strict>),
 }
 
 impl Receiver {
@@ -204,7 +204,7 @@ mod tests {
 
     use link::{Command, Message, Refusal};
 
-    use super::{Found, Published, Receiver, Span, Strict};
+    use super::{Found, Receiver, Span};
 
     /// What is found in a stream: the spans of messages, and of the rest with the reason.
     fn found(mut receiver: Receiver, stream: &[u8]) -> Vec<(Span, &'static str)> {
@@ -225,8 +225,8 @@ mod tests {
 
     fn receivers() -> [Receiver; 2] {
         [
-            Receiver::Published(Published::default()),
-            Receiver::Strict(Strict::default()),
+            Receiver::Published(Box::default()),
+            Receiver::Strict(Box::default()),
         ]
     }
 

@@ -7,7 +7,7 @@ use link::{Counters, Message};
 use super::dropped::{DropReason, Dropped};
 use super::ledger::Ledger;
 use super::quirks::Quirks;
-use super::receiver::{Found, NumberedByte, Published, Receiver, Span, Strict};
+use super::receiver::{Found, NumberedByte, Receiver, Span};
 
 /// Bytes that UART2's stream buffer holds.
 const BUFFER_BYTES: usize = 200;
@@ -40,9 +40,9 @@ impl Uart {
             capacity: quirks.short_buffer.then_some(BUFFER_BYTES),
             buffer: VecDeque::with_capacity(BUFFER_BYTES),
             receiver: if quirks.published_receiver {
-                Receiver::Published(Published::default())
+                Receiver::Published(Box::default())
             } else {
-                Receiver::Strict(Strict::default())
+                Receiver::Strict(Box::default())
             },
             ledger: Ledger::default(),
             arrived: 0,
