@@ -1,8 +1,5 @@
 //! `hil campaign`: many seeds of one scenario on the native backend, and their statistics.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc;
-
 use clap::Args;
 use serde::Serialize;
 
@@ -11,6 +8,7 @@ use super::console::Console;
 use super::fly::ScenarioArguments;
 use crate::flight::{self, FlightError};
 use crate::metrics::quantile;
+use crate::parallel;
 use crate::scenario::{Homing, Scenario};
 use crate::summary::Summary;
 
@@ -99,47 +97,24 @@ fn fly_all(
         .map(|index| arguments.first.wrapping_add(index))
         .collect();
     let mut progress = console.progress("Flying", arguments.seeds);
-    let next = AtomicUsize::new(0);
-    let (sender, receiver) = mpsc::channel();
-    let mut results: Vec<_> = std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-            let (sender, next, seeds) = (sender.clone(), &next, &seeds);
-            scope.spawn(move || {
-                while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let scenario = Scenario {
-                        homing,
-                        ..arguments.scenario.scenario(seed)
-                    };
-                    let summary =
-                        flight::fly_native(&scenario, &mut |_| ()).map(|flown| flown.summary);
-                    if sender.send((seed, summary)).is_err() {
-                        return;
-                    }
-                }
+    let flown = parallel::map(
+        &seeds,
+        |seed| {
+            let scenario = Scenario {
+                homing,
+                ..arguments.scenario.scenario(*seed)
+            };
+            flight::fly_native(&scenario, &mut |_| ()).map(|flown| flown.summary)
+        },
+        |done| {
+            progress.set(done as u64, || {
+                let flights = seeds.len();
+                format!("{done} of {flights} flights, homing: {}", homing.name())
             });
-        }
-        drop(sender);
-        let count = |done: usize| {
-            format!(
-                "{} of {} flights, homing: {}",
-                done,
-                seeds.len(),
-                homing.name()
-            )
-        };
-        receiver
-            .iter()
-            .enumerate()
-            .inspect(|(done, _)| progress.set(*done as u64 + 1, || count(done + 1)))
-            .map(|(_, result)| result)
-            .collect()
-    });
+        },
+    );
     progress.finish();
-    results.sort_by_key(|(seed, _)| *seed);
-    let summaries = results
-        .into_iter()
-        .map(|(_, summary)| summary)
-        .collect::<Result<Vec<_>, _>>()?;
+    let summaries = flown.into_iter().collect::<Result<Vec<_>, _>>()?;
     Ok(statistics(homing, &summaries))
 }
 

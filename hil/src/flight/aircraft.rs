@@ -5,11 +5,11 @@ use core::f64::consts::TAU;
 
 use autopilot::app::{self, FlightApp, Script, Settings};
 use autopilot::controller::{ControllerParameters, MotorCommands, SetPoint};
-use autopilot::ekf::{self, Ekf, Estimate, ImuSample, Measurement};
+use autopilot::ekf::{self, Ekf, Estimate, Measurement};
 use autopilot::vehicle::{PAPER_MASS_KG, Truth, Vehicle, VehicleParameters};
 use autopilot::{FlyingDetector, Stabiliser};
 use fake_sensors::camera;
-use fake_sensors::motion::{MotionReadings, MotionSensors, MotionTruth, SensorModel};
+use fake_sensors::motion::{MotionReadings, MotionSensors, SensorModel};
 use fake_sensors::random::Normal;
 use fake_sensors::wind::{Wind, WindModel};
 use link::Message;
@@ -18,6 +18,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use crate::record::PlanarPose;
 use crate::recorder::Glimpse;
 use crate::scenario::{Conditions, Scenario};
+use crate::sensing;
 
 /// How high the camera looks out above the drone's feet, metres.
 const CAMERA_HEIGHT_M: f32 = 0.04;
@@ -71,7 +72,9 @@ impl Aircraft {
     /// One millisecond: `received` is what came from the camera board since the last call. Returns
     /// what goes to it.
     pub fn tick(&mut self, now_ms: u64, received: &[u8]) -> Vec<u8> {
-        let readings = self.sensors.tick(&motion_truth(self.vehicle.truth()));
+        let readings = self
+            .sensors
+            .tick(&sensing::motion_truth(self.vehicle.truth()));
         self.filter(now_ms, &readings);
         let output = self.app.tick(now_ms, &self.stabiliser.estimate(), received);
         self.measurements = output.measurements;
@@ -90,19 +93,15 @@ impl Aircraft {
             self.stabiliser.request_filter_reset();
             self.uncorrected.request_reset();
         }
-        let imu = ImuSample {
-            gyro_deg_s: readings.imu.gyro_deg_s,
-            acc_g: readings.imu.acc_g,
-        };
-        let sensed = sensed(readings);
+        let imu = sensing::imu_sample(readings);
+        let mut measurements: Vec<Measurement> = sensing::deck_measurements(readings).collect();
         // The same rule on the same commands as in the filter that is corrected.
         let flying = self.flying.update(now_ms, &self.motors);
-        for measurement in imu.measurements().iter().chain(&sensed) {
+        for measurement in imu.measurements().iter().chain(&measurements) {
             // Three or four of twenty places: the queue is drained every tick.
             let _ = self.uncorrected.enqueue(*measurement);
         }
         self.uncorrected.tick(now_ms, flying);
-        let mut measurements = sensed;
         measurements.append(&mut self.measurements);
         self.motors = self
             .stabiliser
@@ -182,35 +181,6 @@ pub fn pose_on_the_ground() -> camera::Pose {
         position_m: Vector3::new(0.0, 0.0, CAMERA_HEIGHT_M),
         attitude: UnitQuaternion::identity(),
     }
-}
-
-fn motion_truth(truth: &Truth) -> MotionTruth {
-    MotionTruth {
-        position_m: truth.position_m,
-        velocity_m_s: truth.velocity_m_s,
-        attitude: truth.attitude,
-        angular_rate_rad_s: truth.angular_rate_rad_s,
-        specific_force_m_s2: truth.specific_force_m_s2,
-    }
-}
-
-/// What the deck's sensors have for the filter.
-fn sensed(readings: &MotionReadings) -> Vec<Measurement> {
-    let flow = readings.flow.map(|flow| {
-        let counts = flow.counts.map(f32::from);
-        Measurement::Flow(ekf::Flow {
-            counts,
-            dt_s: flow.dt_s,
-            sd_counts: flow.sd_counts,
-        })
-    });
-    let range = readings.range.map(|range| {
-        Measurement::Range(ekf::Range {
-            distance_m: range.distance_m,
-            sd_m: range.sd_m,
-        })
-    });
-    flow.into_iter().chain(range).collect()
 }
 
 fn planar(estimate: &Estimate) -> PlanarPose {

@@ -135,10 +135,9 @@ impl Oracle {
     }
 
     fn add_noise(&mut self, dt: f64) {
-        let a = [0.5, 0.5, 1.0];
-        for axis in 0..3 {
-            self.p[(axis, axis)] += (a[axis] * dt * dt).powi(2);
-            self.p[(3 + axis, 3 + axis)] += (a[axis] * dt).powi(2);
+        for (axis, a) in [0.5, 0.5, 1.0].into_iter().enumerate() {
+            self.p[(axis, axis)] += (a * dt * dt).powi(2);
+            self.p[(3 + axis, 3 + axis)] += (a * dt).powi(2);
             self.p[(6 + axis, 6 + axis)] += (0.1 * dt).powi(2);
         }
         self.bound();
