@@ -13,8 +13,13 @@ use super::solid::{Form, Solid};
 
 /// Solids in a leaf at most.
 const LEAF: usize = 4;
-/// Nodes that wait at most: three on each of the levels that 2^20 solids make, and some.
+/// Children that wait at most: three on each of the 19 levels that [`MAX_SOLIDS`] make at worst, and
+/// the last four.
+///
+/// [`MAX_SOLIDS`]: crate::world::build::MAX_SOLIDS
 const WAITING: usize = 64;
+/// Up to this many solids are split where it is best, more in the middle.
+const SWEPT: usize = 4_096;
 /// From this many times a box's half diagonal on, half a pixel's width sees its haze.
 const BLURRED: f32 = 0.3;
 /// Boxes with more solids than this have no haze: they are never that far away.
@@ -56,15 +61,28 @@ struct Bounds {
 }
 
 impl Bounds {
+    const NOTHING: Self = Self {
+        low: Vector3::new(f32::INFINITY, f32::INFINITY, f32::INFINITY),
+        high: Vector3::new(f32::NEG_INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY),
+    };
+
     fn of(solids: &[Solid]) -> Self {
-        let nothing = Self {
-            low: Vector3::repeat(f32::INFINITY),
-            high: Vector3::repeat(f32::NEG_INFINITY),
-        };
-        solids.iter().fold(nothing, |bounds, solid| Self {
-            low: bounds.low.inf(&(solid.centre - solid.bounds())),
-            high: bounds.high.sup(&(solid.centre + solid.bounds())),
-        })
+        solids.iter().fold(Self::NOTHING, Self::with)
+    }
+
+    /// The box that holds `solid` as well.
+    fn with(self, solid: &Solid) -> Self {
+        let half = solid.bounds();
+        Self {
+            low: self.low.inf(&(solid.centre - half)),
+            high: self.high.sup(&(solid.centre + half)),
+        }
+    }
+
+    /// Half the surface; 0 of nothing.
+    fn surface(&self) -> f32 {
+        let size = (self.high - self.low).sup(&Vector3::zeros());
+        size.x * size.y + size.y * size.z + size.z * size.x
     }
 }
 
@@ -94,42 +112,44 @@ impl Bvh {
         covers: &mut Covers<'a>,
         mut offer: impl FnMut(&'a Solid, &mut Covers<'a>),
     ) {
-        let mut waiting = [(0_u32, 0.0_f32); WAITING];
-        let mut count = usize::from(!self.nodes.is_empty());
+        let mut waiting = [(Child::Nothing, 0.0_f32); WAITING];
+        let mut count = 0;
+        if !self.nodes.is_empty() {
+            waiting[0].0 = Child::Node(0);
+            count = 1;
+        }
         while count > 0 {
             count -= 1;
-            let (node, enter_m) = waiting[count];
+            let (child, enter_m) = waiting[count];
             if enter_m >= covers.limit_m() {
                 continue;
             }
-            let node = &self.nodes[node as usize];
-            let (order, enters_m, widths_m) = node.nearest_first(ray);
-            let first_new = count;
-            for &lane in &order {
-                if enters_m[lane] >= covers.limit_m() {
-                    break;
+            match child {
+                Child::Leaf(first, solids) => {
+                    for solid in &self.solids[first as usize..(first + solids) as usize] {
+                        offer(solid, covers);
+                    }
                 }
-                if let Some(haze) = &node.haze[lane]
-                    && widths_m[lane] > BLURRED * node.radius[lane]
-                {
-                    add_haze(haze, &node.ball(lane), ray, covers);
-                    continue;
-                }
-                match node.children[lane] {
-                    Child::Leaf(first, solids) => {
-                        for solid in &self.solids[first as usize..(first + solids) as usize] {
-                            offer(solid, covers);
+                Child::Node(node) => {
+                    let first_new = count;
+                    self.nodes[node as usize].visit(ray, covers, |child, enter_m| {
+                        if count < WAITING {
+                            // The last to wait is the next to be visited: the nearest.
+                            let waiting = &mut waiting[first_new..=count];
+                            let nearer = waiting[..count - first_new]
+                                .iter()
+                                .rev()
+                                .take_while(|(_, other_m)| *other_m < enter_m)
+                                .count();
+                            let place = count - first_new - nearer;
+                            waiting[place..].rotate_right(1);
+                            waiting[place] = (child, enter_m);
+                            count += 1;
                         }
-                    }
-                    Child::Node(child) if count < WAITING => {
-                        waiting[count] = (child, enters_m[lane]);
-                        count += 1;
-                    }
-                    Child::Node(_) | Child::Nothing => {}
+                    });
                 }
+                Child::Nothing => {}
             }
-            // The last to wait is the next to be visited: the nearest.
-            waiting[first_new..count].reverse();
         }
     }
 }
@@ -147,23 +167,29 @@ impl Node {
         }
     }
 
-    /// The children in order of distance, where the widening ray enters each (infinite if it does
-    /// not), and half the pixel's width there.
+    /// Gives `wait` the children that the widening ray enters, each with the distance; adds the haze
+    /// of those that are too far away.
     #[inline]
-    fn nearest_first(&self, ray: &Ray) -> ([usize; 4], [f32; 4], [f32; 4]) {
-        let (enters, widths) = self.enters_m(ray);
-        let mut order = [0, 1, 2, 3];
-        // A sorting network for four.
-        for (a, b) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
-            if enters[order[b]] < enters[order[a]] {
-                order.swap(a, b);
+    fn visit<'a>(&'a self, ray: &Ray, covers: &mut Covers<'a>, mut wait: impl FnMut(Child, f32)) {
+        let (enters_m, leaves_m, widths_m) = self.enters_m(ray);
+        for lane in 0..4 {
+            let enter_m = enters_m[lane];
+            if enter_m > leaves_m[lane] || enter_m >= covers.limit_m() {
+                continue;
+            }
+            match &self.haze[lane] {
+                Some(haze) if widths_m[lane] > BLURRED * self.radius[lane] => {
+                    add_haze(haze, &self.ball(lane), ray, covers);
+                }
+                _ => wait(self.children[lane], enter_m),
             }
         }
-        (order, enters, widths)
     }
 
+    /// Where the widening ray enters each child's box, where it leaves it (earlier, if it misses it),
+    /// and half the pixel's width there.
     #[inline]
-    fn enters_m(&self, ray: &Ray) -> ([f32; 4], [f32; 4]) {
+    fn enters_m(&self, ray: &Ray) -> ([f32; 4], [f32; 4], [f32; 4]) {
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z];
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z];
         let width = ray.half_across.max(ray.half_up);
@@ -188,12 +214,7 @@ impl Node {
                 leave[lane] = smaller(leave[lane], middle + half);
             }
         }
-        for lane in 0..4 {
-            if enter[lane] > leave[lane] {
-                enter[lane] = f32::INFINITY;
-            }
-        }
-        (enter, grown)
+        (enter, leave, grown)
     }
 }
 
@@ -265,14 +286,42 @@ fn grow(
     index
 }
 
-/// Puts the half with the smaller middles along the longest axis first, and gives its size.
+/// Sorts `solids` so that the first and the rest lie apart, and gives the number of the first: where
+/// the surfaces of the two boxes, weighted by what they hold, are least (Goldsmith & Salmon 1987).
+/// Either holds a quarter at least, which bounds the tree's depth.
 fn split(solids: &mut [Solid]) -> usize {
-    if solids.len() <= 1 {
-        return solids.len();
+    let total = solids.len();
+    if total <= 1 {
+        return total;
     }
-    let bounds = Bounds::of(solids);
-    let axis = (bounds.high - bounds.low).imax();
-    // Stable, so that solids with one middle keep their order.
+    if total > SWEPT {
+        let bounds = Bounds::of(solids);
+        sort_along(solids, (bounds.high - bounds.low).imax());
+        return total / 2;
+    }
+    let (mut best, mut best_axis, mut least) = (total / 2, 0, f32::INFINITY);
+    for axis in 0..3 {
+        sort_along(solids, axis);
+        let mut rest = Bounds::NOTHING;
+        let mut after = vec![0.0; total];
+        for (place, solid) in solids.iter().enumerate().rev() {
+            rest = rest.with(solid);
+            after[place] = rest.surface();
+        }
+        let mut first = Bounds::NOTHING;
+        for (place, solid) in solids.iter().enumerate().take((3 * total).div_ceil(4)) {
+            let cost = first.surface() * place as f32 + after[place] * (total - place) as f32;
+            if place >= total.div_ceil(4) && cost < least {
+                (best, best_axis, least) = (place, axis, cost);
+            }
+            first = first.with(solid);
+        }
+    }
+    sort_along(solids, best_axis);
+    best
+}
+
+/// Stable, so that solids with one middle keep their order.
+fn sort_along(solids: &mut [Solid], axis: usize) {
     solids.sort_by(|a, b| a.centre[axis].total_cmp(&b.centre[axis]));
-    solids.len() / 2
 }
