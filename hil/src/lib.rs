@@ -14,6 +14,7 @@ pub mod flight;
 pub mod folder;
 pub mod homing_check;
 pub mod image;
+pub mod import_cf;
 pub mod link_check;
 pub mod live;
 pub mod metrics;

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::scenario::Conditions;
 
 /// `summary.json` of a flight.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
     /// The drone followed the route to its first snapshot and landed.
     pub completed: bool,

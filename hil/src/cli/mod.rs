@@ -12,6 +12,7 @@ mod ekf_replay;
 mod emulate;
 mod fly;
 mod homing_check;
+mod import_cf;
 mod link_check;
 mod live;
 mod steps;
@@ -55,6 +56,8 @@ enum Verb {
     Build,
     /// Holds the homing against a file of solved problems
     HomingCheck(homing_check::Arguments),
+    /// Draws the report of a real flight from the logs of cfclient
+    ImportCf(import_cf::Arguments),
     /// Holds the link's codec against records of another implementation's
     LinkCheck(link_check::Arguments),
     /// Measures how far dead reckoning strays
@@ -78,6 +81,7 @@ pub fn main() -> ExitCode {
         Verb::Campaign(arguments) => campaign::run(&arguments, &console),
         Verb::Build => build(&console),
         Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),
+        Verb::ImportCf(arguments) => import_cf::run(&arguments, &console),
         Verb::LinkCheck(arguments) => link_check::run(&arguments, &console),
         Verb::Drift(arguments) => drift::run(&arguments, &console),
         Verb::EkfReplay(arguments) => ekf_replay::run(&arguments, &console),
