@@ -37,6 +37,10 @@ fn the_base_thrust_carries_drones_of_either_mass() {
     // The stock motors' 0.2 N and the identified inertia come out of the scaling.
     let stock = VehicleParameters::crazyflie_brushless(STOCK_MASS_KG);
     assert!((stock.full_thrust_n - 0.2).abs() < 0.02);
+    let identified = VehicleParameters::crazyflie_brushless(0.043_38).inertia_kg_m2;
+    assert!((identified - Vector3::new(25e-6, 28e-6, 49e-6)).norm() < 1e-12);
+    let paper = VehicleParameters::crazyflie_brushless(PAPER_MASS_KG).inertia_kg_m2;
+    assert!((paper / PAPER_MASS_KG - identified / 0.043_38).norm() < 1e-12);
 }
 
 #[test]

@@ -108,8 +108,8 @@ fn a_growing_rate_is_resisted_by_its_derivative() {
 
 #[test]
 fn a_turning_body_is_slowed_by_the_derivative_of_its_heading() {
-    // The heading is met at every step, so of the attitude loop only 0.35 of 10 deg/s is left. The rate that is asked
-    // for is flown from 0.1 s on: what the rate loop gives then is what it has integrated before.
+    // The heading is met at every step, so of the attitude loop only 0.35 of 10 deg/s is left. For 0.2 s nothing turns:
+    // 120 of the rate that is asked for, and 16.7 of its integral. Once it is flown, the integral is left.
     let mut loops = loops();
     let mut turn = |step: u16, rate_deg_s| {
         let yaw_deg = 10.0 * DT_S * f32::from(step);
@@ -117,9 +117,11 @@ fn a_turning_body_is_slowed_by_the_derivative_of_its_heading() {
         let gyro = Vector3::new(0.0, 0.0, rate_deg_s);
         loops.update(&lean(0.0, 0.0), yaw_deg, &angles, &gyro).yaw
     };
-    let before = (0..100).fold(0.0, |_, step| turn(step, 0.0));
-    let after = turn(100, -3.5);
-    assert_close(before - after, -120.0 * 0.35 * 10.0, 1.0);
+    let still = (0..100).fold(0.0, |_, step| turn(step, 0.0));
+    let turning = turn(100, -3.5);
+    let integral = 16.7 * 3.5 * 0.2;
+    assert_close(still, -120.0 * 3.5 - integral, 2.0);
+    assert_close(turning, -integral, 2.0);
 }
 
 #[test]
