@@ -10,7 +10,7 @@ mod published;
 
 pub use flight::OpenLoop;
 pub use plot::picture;
-pub use published::{PUBLISHED, Published, TOLERANCE, verdict};
+pub use published::{PUBLISHED, Published, accepted, verdict};
 
 use fake_sensors::motion::SensorModel;
 use serde::Serialize;

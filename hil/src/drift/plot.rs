@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::{Published, Row};
+use super::{Published, Row, accepted};
 use crate::report::number;
 use crate::report::style;
 use crate::report::svg::{self, Point, px};
@@ -25,26 +25,42 @@ struct Curve {
     label: &'static str,
     colour: &'static str,
     value: fn(&Row) -> f64,
-    published: fn(&Published) -> [f64; 2],
+    published: fn(&Published) -> Reference,
+}
+
+/// What the firmware's filter made of it.
+struct Reference {
+    value: f64,
+    /// Between which figures ours agrees with it.
+    accepted: [f64; 2],
 }
 
 const CROSS: Curve = Curve {
     label: "across",
     colour: "homing",
     value: |row| row.cross_rms_m * 100.0,
-    published: |published| [published.cross_rms_m * 100.0, published.cross_tolerance],
+    published: |published| Reference {
+        value: published.cross_rms_m * 100.0,
+        accepted: published.cross_accepted_m.map(|end| end * 100.0),
+    },
 };
 const ALONG: Curve = Curve {
     label: "along",
     colour: "outbound",
     value: |row| row.along_rms_m * 100.0,
-    published: |published| [published.along_rms_m * 100.0, super::TOLERANCE],
+    published: |published| Reference {
+        value: published.along_rms_m * 100.0,
+        accepted: accepted(published.along_rms_m * 100.0),
+    },
 };
 const YAW: Curve = Curve {
     label: "heading",
     colour: "uncorrected",
     value: |row| row.yaw_rms_rad.to_degrees(),
-    published: |published| [published.yaw_rms_rad.to_degrees(), super::TOLERANCE],
+    published: |published| Reference {
+        value: published.yaw_rms_rad.to_degrees(),
+        accepted: accepted(published.yaw_rms_rad.to_degrees()),
+    },
 };
 
 /// The picture as a stand-alone SVG on a light background.
@@ -91,7 +107,7 @@ impl<'a> Panel<'a> {
             let theirs = rows
                 .iter()
                 .filter_map(|row| Published::at(row.distance_m))
-                .flat_map(|published| bar((curve.published)(published)));
+                .flat_map(|published| (curve.published)(published).accepted);
             ours.chain(theirs)
         });
         Some(Self {
@@ -154,9 +170,9 @@ impl<'a> Panel<'a> {
             .filter_map(|row| Published::at(row.distance_m));
         html! {
             @for published in published {
-                @let [value, tolerance] = (curve.published)(published);
-                @let [low, high] = bar([value, tolerance]).map(|end| self.place(published.distance_m, end));
-                @let [x, y] = self.place(published.distance_m, value);
+                @let reference = (curve.published)(published);
+                @let [low, high] = reference.accepted.map(|end| self.place(published.distance_m, end));
+                @let [x, y] = self.place(published.distance_m, reference.value);
                 path class=(format!("line s-{}", curve.colour)) stroke-width="6" stroke-opacity=".22"
                     d=(svg::polyline([low, high])) {}
                 circle class=(format!("f-paper s-{}", curve.colour)) stroke-width="1.3" cx=(px(x)) cy=(px(y)) r="4" {}
@@ -178,11 +194,6 @@ impl<'a> Panel<'a> {
             }
         }
     }
-}
-
-/// The ends of what counts as agreeing with a value, by its tolerance.
-fn bar([value, tolerance]: [f64; 2]) -> [f64; 2] {
-    [value * (1.0 - tolerance), value * (1.0 + tolerance)]
 }
 
 /// 1, 2 and 5 times the powers of ten inside a range of decades, each with the decimals it needs.

@@ -185,6 +185,26 @@ fn finalise_folds_the_error_into_attitude_and_covariance() {
 }
 
 #[test]
+fn the_supervisor_looks_at_each_axis_of_position_and_of_body_velocity() {
+    let mut state = State::initial(&Parameters::default());
+    // Level, turned left by an eighth of a circle.
+    state.attitude = UnitQuaternion::from_euler_angles(0.0, 0.0, core::f32::consts::FRAC_PI_4);
+    state.finalise();
+    for (position, velocity, out) in [
+        ([99.0, -99.0, 99.0], [0.0, 0.0, 0.0], false),
+        ([0.0, -100.1, 0.0], [0.0, 0.0, 0.0], true),
+        // 12.7 m/s along one axis of the world, and 7.4 along two of them.
+        ([0.0; 3], [9.0, -9.0, 0.0], false),
+        ([0.0; 3], [10.5, 0.0, 0.0], true),
+        ([0.0; 3], [0.0, 0.0, -10.1], true),
+    ] {
+        state.position = position.into();
+        state.velocity = velocity.into();
+        assert_eq!(state.out_of_bounds(), out, "{position:?} {velocity:?}");
+    }
+}
+
+#[test]
 fn noise_updates_and_finalise_each_leave_the_covariance_within_its_bounds() {
     let beyond = || {
         let mut state = busy_state();
