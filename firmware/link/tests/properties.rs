@@ -1,38 +1,25 @@
 //! What holds for every message and for every stream of bytes.
+//!
+//! That nothing here allocates needs no test: the crate is `no_std` and does not link `alloc`.
 
 mod common;
 
 use std::f32::consts::PI;
 
-use common::{LONGEST_CLAIM, coordinate, frame, frames_in, frames_in_ended, message, stream};
+use common::invariants::Case;
+use common::{coordinate, frame, stream};
 use link::{InsCorrection, Map, Parser, Source, State, Vector, WorldPoint, WorldPose};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// Feeds `stream` in pieces cut at multiples of the given lengths; the encoded frames that come out.
-fn parse(parser: &mut Parser, stream: &[u8], pieces: &[usize]) -> Vec<Vec<u8>> {
-    let mut pieces = pieces.iter().copied().cycle();
-    let mut rest = stream;
-    let mut frames = Vec::new();
-    while !rest.is_empty() {
-        let len = pieces.next().unwrap_or(1).clamp(1, rest.len());
-        let (piece, behind) = rest.split_at(len);
-        frames.extend(parser.frames(piece).map(|frame| frame.encode().to_vec()));
-        rest = behind;
-    }
-    frames
-}
-
-/// Bytes without a start byte, framed: nothing inside can be taken for another frame.
-fn plain_frame() -> impl Strategy<Value = Vec<u8>> {
-    message()
-        .prop_map(|message| message.encode().to_vec())
-        .prop_filter("a start byte inside", |bytes| {
-            !bytes[1..].contains(&0x99) && bytes.len() < 60
-        })
+/// Lengths of pieces.
+fn pieces() -> impl Strategy<Value = Vec<usize>> {
+    vec(1usize..300, 1..6)
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
     #[test]
     fn any_frame_comes_back_bit_for_bit(frame in frame()) {
         let bytes = frame.encode();
@@ -45,55 +32,30 @@ proptest! {
     }
 
     #[test]
-    fn what_comes_out_of_a_stream_does_not_depend_on_how_it_is_cut(
+    fn frames_and_refusals_do_not_depend_on_how_a_stream_is_cut(
         stream in stream(),
-        pieces in vec(1usize..300, 1..6),
+        pieces in pieces(),
     ) {
-        let (expected, _) = frames_in(&stream);
-        let mut parser = Parser::new();
-        prop_assert_eq!(&parse(&mut parser, &stream, &pieces), &expected);
-        prop_assert_eq!(&parse(&mut Parser::new(), &stream, &[1]), &expected);
+        Case::run(&stream, &pieces).assert_that_cutting_changed_nothing();
+        Case::run(&stream, &[1]).assert_that_cutting_changed_nothing();
     }
 
     #[test]
-    fn every_byte_is_delivered_counted_or_held(stream in stream(), piece in 1usize..300) {
-        let mut parser = Parser::new();
-        let frames = parse(&mut parser, &stream, &[piece]);
-        let counters = parser.counters();
-        let delivered: usize = frames.iter().map(Vec::len).sum();
-        prop_assert_eq!(delivered + counters.bytes_skipped as usize + parser.held(), stream.len());
-        prop_assert_eq!(counters.frames_ok as usize, frames.len());
-        prop_assert_eq!(stream.len() - parser.held(), frames_in(&stream).1);
+    fn every_byte_is_delivered_counted_or_held(stream in stream(), pieces in pieces()) {
+        Case::run(&stream, &pieces).assert_that_every_byte_is_accounted_for();
     }
 
     #[test]
-    fn a_good_frame_is_found_at_the_latest_one_maximal_frame_behind_garbage(
+    fn good_frames_are_found_at_the_latest_one_maximal_frame_behind_garbage(
         garbage in stream(),
-        good in plain_frame(),
+        pieces in pieces(),
     ) {
-        let copies = 2 + LONGEST_CLAIM / good.len();
-        let mut bytes = garbage.clone();
-        for _ in 0..copies {
-            bytes.extend(&good);
-        }
-        let frames = parse(&mut Parser::new(), &bytes, &[64]);
-        let in_step = frames.iter().rev().take_while(|frame| **frame == good).count();
-        let lost = copies.saturating_sub(in_step);
-        prop_assert!(lost * good.len() < LONGEST_CLAIM + good.len(), "{lost} of {copies} lost");
-        prop_assert_eq!(frames.last(), Some(&good));
+        Case::run(&garbage, &pieces).assert_that_good_frames_are_found_again();
     }
 
     #[test]
-    fn giving_up_decides_a_stream_as_if_nothing_followed(stream in stream()) {
-        let mut parser = Parser::new();
-        let mut frames = parse(&mut parser, &stream, &[17]);
-        while parser.held() > 0 {
-            parser.give_up();
-            frames.extend(parser.frames(&[]).map(|frame| frame.encode().to_vec()));
-        }
-        prop_assert_eq!(&frames, &frames_in_ended(&stream));
-        let delivered: usize = frames.iter().map(Vec::len).sum();
-        prop_assert_eq!(delivered + parser.counters().bytes_skipped as usize, stream.len());
+    fn giving_up_decides_a_stream_as_if_nothing_followed(stream in stream(), pieces in pieces()) {
+        Case::run(&stream, &pieces).assert_that_giving_up_decides_all();
     }
 
     #[test]
