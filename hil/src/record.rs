@@ -3,6 +3,9 @@
 //! Positions are in the route's frame: x north, y west, metres, origin at the true start. Headings
 //! are radians, counter-clockwise from north.
 
+use core::f64::consts::TAU;
+
+use link::Message;
 use nav::snapshot::SNAPSHOT_BYTES;
 use nav::{OdometryVector, StoredSnapshot};
 use serde::Serialize;
@@ -33,6 +36,16 @@ pub struct PlanarPose {
 }
 
 impl PlanarPose {
+    /// The pose that is `further` in the frame of this one.
+    pub fn onward(&self, further: &Self) -> Self {
+        let (sin, cos) = libm::sincos(self.yaw);
+        Self {
+            x: self.x + further.x * cos - further.y * sin,
+            y: self.y + further.x * sin + further.y * cos,
+            yaw: libm::remainder(self.yaw + further.yaw, TAU),
+        }
+    }
+
     /// Distance in the plane, metres.
     pub fn distance(&self, other: &Self) -> f64 {
         libm::hypot(self.x - other.x, self.y - other.y)
@@ -173,6 +186,36 @@ pub struct LinkDrop {
     pub why: String,
 }
 
+/// Something that an end of the link said or did.
+#[derive(Clone, Debug)]
+pub struct Deed {
+    /// Flight time, milliseconds.
+    pub t_ms: u64,
+    /// What.
+    pub what: What,
+}
+
+/// What an end of the link said or did. Coordinates are the autopilot's own.
+#[derive(Clone, Debug, PartialEq)]
+pub enum What {
+    /// A message went onto the wire, before anything could happen to it.
+    Sent {
+        /// From this end.
+        by: Side,
+        /// What it says.
+        message: Message,
+    },
+    /// The flight app lets the drone fly to another place than before: x north, y west, metres.
+    FlyTo([f32; 2]),
+    /// The flight app told its filter that the drone is elsewhere and turned.
+    Correct {
+        /// From the estimate: x north, y west, metres.
+        shift_m: [f32; 2],
+        /// Counter-clockwise, radians.
+        turn_rad: f32,
+    },
+}
+
 /// What stands for the true pose in a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -213,6 +256,9 @@ pub struct Recording {
     pub link_drops: Vec<LinkDrop>,
     /// The log.
     pub log: Vec<LogLine>,
+    /// What was said on the link and done about it, in order. Not part of the folder.
+    #[serde(skip)]
+    pub deeds: Vec<Deed>,
 }
 
 impl Recording {

@@ -5,14 +5,14 @@ use link::{InsCorrection, Map, Message, Source, Vector, WorldPoint, WorldPose};
 
 use crate::board::FirmwareLog;
 use crate::record::{
-    CorrectionMark, FrameMark, LinkDrop, LogLine, OdometryMark, Phase, PlanarPose, Recording, Side,
-    SnapshotMark, TrackPoint, VectorMark,
+    CorrectionMark, Deed, FrameMark, LinkDrop, LogLine, OdometryMark, Phase, PlanarPose, Recording,
+    Side, SnapshotMark, TrackPoint, VectorMark, What,
 };
 
 /// A track point every 100 ms.
 const TRACK_PERIOD_MS: u64 = 100;
 /// Counts of an odometry vector per metre (paper: 0.1 m).
-const COUNTS_PER_M: f32 = 10.0;
+const COUNTS_PER_M: f64 = 10.0;
 
 /// Where things stand at one instant.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,7 +36,9 @@ pub struct Recorder {
     visual: bool,
     correction_index: Option<u16>,
     /// Number of vectors and where they end, from the newest MAP on the way back.
-    tip: Option<(u16, WorldPoint)>,
+    tip: Option<(u16, PlanarPose)>,
+    /// None as long as the autopilot's coordinates are the route's.
+    origin: Option<PlanarPose>,
 }
 
 impl Recorder {
@@ -48,7 +50,19 @@ impl Recorder {
             visual: false,
             correction_index: None,
             tip: None,
+            origin: None,
         }
+    }
+
+    /// From now on the autopilot's coordinates have their origin there.
+    pub fn set_origin(&mut self, origin: PlanarPose) {
+        self.origin = Some(origin);
+        self.tip = None;
+    }
+
+    /// An end of the link said or did something.
+    pub fn deed(&mut self, now_ms: u64, what: What) {
+        self.recording.deeds.push(Deed { t_ms: now_ms, what });
     }
 
     /// The autopilot has taken a message of the camera.
@@ -142,6 +156,13 @@ impl Recorder {
         }
     }
 
+    fn on_the_map(&self, pose: PlanarPose) -> PlanarPose {
+        match self.origin {
+            None => pose,
+            Some(origin) => origin.onward(&pose),
+        }
+    }
+
     fn line(&mut self, t: f64, source: &'static str, level: &str, text: String) {
         self.recording.log.push(LogLine {
             t,
@@ -160,8 +181,14 @@ impl Recorder {
         self.recording.vectors.push(VectorMark {
             t,
             visual: self.visual,
-            start: planar(start, glimpse.estimate.yaw as f32),
-            target: planar(target, turn),
+            start: PlanarPose {
+                yaw: glimpse.estimate.yaw,
+                ..self.on_the_map(planar(start, 0.0))
+            },
+            target: PlanarPose {
+                yaw: turn.into(),
+                ..self.on_the_map(planar(target, 0.0))
+            },
             truth: glimpse.truth,
         });
     }
@@ -171,6 +198,7 @@ impl Recorder {
             return;
         };
         if self.app_phase == app::Phase::Following {
+            let tip = self.on_the_map(planar(tip, 0.0));
             self.followed(map.odometry_index, tip);
             return;
         }
@@ -180,7 +208,10 @@ impl Recorder {
                 t,
                 index: map.snapshot_index,
                 odometry_count: map.odometry_index,
-                believed: planar(snapshot, glimpse.estimate.yaw as f32),
+                believed: PlanarPose {
+                    yaw: glimpse.estimate.yaw,
+                    ..self.on_the_map(planar(snapshot, 0.0))
+                },
                 truth: glimpse.truth,
                 coefficients: map.snapshot_ak_bk.to_vec(),
             });
@@ -189,11 +220,11 @@ impl Recorder {
 
     /// The stack of vectors is one shorter than before: the difference of its ends is the vector
     /// that is gone.
-    fn followed(&mut self, count: u16, tip: WorldPoint) {
+    fn followed(&mut self, count: u16, tip: PlanarPose) {
         if let Some((before, end)) = self.tip
             && before == count + 1
         {
-            let counts = |metres: f32| (metres * COUNTS_PER_M).round() as i8;
+            let counts = |metres: f64| (metres * COUNTS_PER_M).round() as i8;
             let counts = [counts(end.x - tip.x), counts(end.y - tip.y)];
             self.recording.odometry.push(OdometryMark {
                 index: count,
@@ -215,8 +246,8 @@ impl Recorder {
         let mark = CorrectionMark {
             t,
             index,
-            from: pose(from),
-            to: pose(to),
+            from: self.on_the_map(pose(from)),
+            to: self.on_the_map(pose(to)),
             truth: glimpse.truth,
         };
         self.recording.corrections.push(mark);

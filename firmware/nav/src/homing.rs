@@ -13,6 +13,7 @@
 
 mod alignment;
 mod difference;
+mod resemblance;
 
 use nalgebra::Vector2;
 
@@ -22,6 +23,7 @@ use crate::spectrum::{STORED_FREQUENCIES, Spectrum, rotate};
 
 pub use alignment::{align_within, align128};
 pub use difference::ImageDifference;
+pub use resemblance::Resemblance;
 
 /// Weights of the frequencies k = 1..=8.
 pub type Weights = [f32; STORED_FREQUENCIES];

@@ -197,7 +197,12 @@ impl Pilot {
             // Whatever origin the autopilot has now is the next route's.
             self.continuity = Continuity::default();
         }
-        match self.continuity.judge(now_ms, pose, self.view.as_ref()) {
+        match self.continuity.judge(
+            now_ms,
+            pose,
+            self.view.as_ref(),
+            self.navigator.parameters(),
+        ) {
             Verdict::GoesOn(here) => self.go_on(now_ms, pose, &here),
             Verdict::NewOrigin(here) => {
                 self.navigator.resume();

@@ -1,27 +1,29 @@
-//! All that flies and is not the camera board: vehicle, motion sensors, filter, controllers and the
-//! flight app.
+//! All that flies and is not the camera board: the vehicle in its air, its motion sensors and its
+//! autopilot.
 
 use core::f64::consts::TAU;
 
-use autopilot::app::{self, FlightApp, Script, Settings};
-use autopilot::controller::{ControllerParameters, MotorCommands, SetPoint};
-use autopilot::ekf::{self, Ekf, Estimate, Measurement};
+use autopilot::app::{self, Dropped, Script, Settings, Step, Until};
 use autopilot::vehicle::{PAPER_MASS_KG, Truth, Vehicle, VehicleParameters};
-use autopilot::{FlyingDetector, Stabiliser};
 use fake_sensors::camera;
-use fake_sensors::motion::{MotionReadings, MotionSensors, SensorModel};
+use fake_sensors::motion::{MotionSensors, SensorModel};
 use fake_sensors::random::Normal;
 use fake_sensors::wind::{Wind, WindModel};
-use link::Message;
+use link::{Message, Mode, WorldPoint};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::record::PlanarPose;
+use super::autopilot::Autopilot;
+use crate::record::{PlanarPose, What};
 use crate::recorder::Glimpse;
 use crate::scenario::{Conditions, Scenario};
-use crate::sensing;
+use crate::sensing::motion_truth;
 
 /// How high the camera looks out above the drone's feet, metres.
 const CAMERA_HEIGHT_M: f32 = 0.04;
+
+/// From the moment in which the autopilot stops to its flight app's first tick, milliseconds: two
+/// seconds to boot, and the operator's way to the button.
+const RESTART_MS: u64 = 5_000;
 
 /// Stream of the seed that draws where the wind comes from, clear of the sensors'.
 const WIND_DIRECTION_STREAM: u64 = u64::from_be_bytes(*b"windfrom");
@@ -31,25 +33,31 @@ const WIND_DIRECTION_STREAM: u64 = u64::from_be_bytes(*b"windfrom");
 pub struct Aircraft {
     vehicle: Vehicle,
     sensors: MotionSensors,
-    stabiliser: Stabiliser,
-    app: FlightApp,
-    /// The filter's twin: fed with the same sensors, never corrected.
-    uncorrected: Ekf,
-    flying: FlyingDetector,
-    motors: MotorCommands,
-    /// What the app asked of the filter, for its next tick.
-    measurements: Vec<Measurement>,
-    reset_filter: bool,
-    set_point: SetPoint,
     wind: Option<Wind>,
+    autopilot: Autopilot,
+    settings: Settings,
+    /// What the operator starts: from the ground the whole script, later on the way back.
+    script: Script,
+    /// When the autopilot stops, if it has not yet.
+    stops_ms: Option<u64>,
+    /// Since when the autopilot runs, or from when on it will.
+    runs_since_ms: u64,
+    /// Where the filter's coordinates have their origin; none as long as that is the route's.
+    origin: Option<PlanarPose>,
+    origin_is_news: bool,
+    filter_resets: u32,
+    /// Where the app lets the drone fly.
+    flies_to: Option<WorldPoint>,
+    deeds: Vec<What>,
 }
 
 impl Aircraft {
     /// On the ground at the start of the route, facing north.
     pub fn new(scenario: &Scenario, route: &app::Route) -> Self {
-        let filter = ekf::Parameters::default();
         let spacing = [scenario.spacing.decimetres()];
         let script = Script::record_and_return(route, scenario.homing.record(), &spacing);
+        let settings = settings(&scenario.conditions);
+        let stops_s = scenario.conditions.restart_s;
         Self {
             vehicle: Vehicle::standing_at(
                 VehicleParameters::crazyflie_brushless(PAPER_MASS_KG),
@@ -57,55 +65,80 @@ impl Aircraft {
                 0.0,
             ),
             sensors: MotionSensors::new(&SensorModel::default(), scenario.seed),
-            stabiliser: Stabiliser::new(filter, &ControllerParameters::default(), 0),
-            app: FlightApp::new(script, settings(&scenario.conditions)),
-            uncorrected: Ekf::new(filter, 0),
-            flying: FlyingDetector::default(),
-            motors: MotorCommands::STOPPED,
-            measurements: Vec::new(),
-            reset_filter: false,
-            set_point: SetPoint::MotorsOff,
             wind: wind(scenario),
+            autopilot: Autopilot::new(script.clone(), settings, 0),
+            settings,
+            script,
+            stops_ms: stops_s.map(|seconds| (1_000.0 * seconds) as u64),
+            runs_since_ms: 0,
+            origin: None,
+            origin_is_news: false,
+            filter_resets: 0,
+            flies_to: None,
+            deeds: Vec::new(),
         }
     }
 
     /// One millisecond: `received` is what came from the camera board since the last call. Returns
     /// what goes to it.
     pub fn tick(&mut self, now_ms: u64, received: &[u8]) -> Vec<u8> {
-        let readings = self
-            .sensors
-            .tick(&sensing::motion_truth(self.vehicle.truth()));
-        self.filter(now_ms, &readings);
-        let output = self.app.tick(now_ms, &self.stabiliser.estimate(), received);
-        self.measurements = output.measurements;
-        self.reset_filter = output.reset_filter;
-        self.set_point = output.set_point;
+        if self.stops_ms == Some(now_ms) {
+            self.restart(now_ms);
+        }
+        let readings = self.sensors.tick(&motion_truth(self.vehicle.truth()));
+        let transmit = if now_ms >= self.runs_since_ms {
+            self.autopilot.tick(now_ms, &readings, received)
+        } else {
+            // Nobody reads the sensors or the UART.
+            Vec::new()
+        };
+        self.notice_filter_reset();
+        self.notice_deeds();
         if let Some(wind) = &mut self.wind {
             self.vehicle.set_wind(wind.tick());
         }
-        self.vehicle.step(&self.motors);
-        output.transmit
+        self.vehicle.step(self.autopilot.motors());
+        transmit
     }
 
-    /// Sensors, filter and controllers.
-    fn filter(&mut self, now_ms: u64, readings: &MotionReadings) {
-        if std::mem::take(&mut self.reset_filter) {
-            self.stabiliser.request_filter_reset();
-            self.uncorrected.request_reset();
+    /// The autopilot's processor stops, and the motors with it; when it runs again, the operator lets
+    /// the drone take off where it lies and follow the route.
+    fn restart(&mut self, now_ms: u64) {
+        let has_flown = !matches!(self.phase(), app::Phase::Ground | app::Phase::TakeOff);
+        if has_flown {
+            self.script = way_back();
         }
-        let imu = sensing::imu_sample(readings);
-        let mut measurements: Vec<Measurement> = sensing::deck_measurements(readings).collect();
-        // The same rule on the same commands as in the filter that is corrected.
-        let flying = self.flying.update(now_ms, &self.motors);
-        for measurement in imu.measurements().iter().chain(&measurements) {
-            // Three or four of twenty places: the queue is drained every tick.
-            let _ = self.uncorrected.enqueue(*measurement);
+        self.runs_since_ms = now_ms + RESTART_MS;
+        self.autopilot = Autopilot::new(self.script.clone(), self.settings, self.runs_since_ms);
+        self.filter_resets = 0;
+        self.stops_ms = None;
+    }
+
+    /// A filter that is reset counts from where the drone is. The first reset is at the route's own
+    /// origin.
+    fn notice_filter_reset(&mut self) {
+        let resets = self.autopilot.filter_resets();
+        if resets != self.filter_resets {
+            self.filter_resets = resets;
+            if resets > 1 || self.runs_since_ms > 0 {
+                self.origin = Some(self.true_pose());
+                self.origin_is_news = true;
+            }
         }
-        self.uncorrected.tick(now_ms, flying);
-        measurements.append(&mut self.measurements);
-        self.motors = self
-            .stabiliser
-            .tick(now_ms, &imu, &measurements, &self.set_point);
+    }
+
+    fn notice_deeds(&mut self) {
+        let before = self.flies_to;
+        self.flies_to = self.autopilot.set_point();
+        if let Some(place) = self.flies_to
+            && self.flies_to != before
+            && self.phase() == app::Phase::Following
+        {
+            self.deeds.push(What::FlyTo([place.x, place.y]));
+        }
+        if let Some((shift_m, turn_rad)) = self.autopilot.correction() {
+            self.deeds.push(What::Correct { shift_m, turn_rad });
+        }
     }
 
     /// Where the camera is.
@@ -121,30 +154,63 @@ impl Aircraft {
 
     /// What the app is doing.
     pub fn phase(&self) -> app::Phase {
-        self.app.phase()
+        self.autopilot.phase()
     }
 
     /// The messages that the app has taken from its UART since the last call.
     pub fn take_received(&mut self) -> impl Iterator<Item = Message> + use<> {
-        self.app
-            .take_received()
-            .into_iter()
-            .map(|received| received.message)
+        let received = self.autopilot.app().take_received();
+        received.into_iter().map(|received| received.message)
+    }
+
+    /// The frames that the app has dropped since the last call.
+    pub fn take_dropped(&mut self) -> Vec<Dropped> {
+        self.autopilot.app().take_dropped()
+    }
+
+    /// The origin that the filter's coordinates have got since the last call, if they have.
+    pub fn take_new_origin(&mut self) -> Option<PlanarPose> {
+        std::mem::take(&mut self.origin_is_news)
+            .then_some(self.origin)
+            .flatten()
+    }
+
+    /// Where the app has let the drone fly since the last call, and what it has told the filter.
+    pub fn take_deeds(&mut self) -> Vec<What> {
+        std::mem::take(&mut self.deeds)
     }
 
     /// Where things stand.
     pub fn glimpse(&self) -> Glimpse {
-        let truth = self.vehicle.truth();
+        let on_the_map = |pose: PlanarPose| match self.origin {
+            None => pose,
+            Some(origin) => origin.onward(&pose),
+        };
         Glimpse {
-            truth: PlanarPose {
-                x: truth.position_m.x,
-                y: truth.position_m.y,
-                yaw: yaw(&truth.attitude),
-            },
-            estimate: planar(&self.stabiliser.estimate()),
-            uncorrected: planar(&self.uncorrected.estimate()),
-            height_m: truth.position_m.z,
+            truth: self.true_pose(),
+            estimate: on_the_map(self.autopilot.estimate()),
+            uncorrected: on_the_map(self.autopilot.uncorrected()),
+            height_m: self.vehicle.truth().position_m.z,
         }
+    }
+
+    fn true_pose(&self) -> PlanarPose {
+        let truth = self.vehicle.truth();
+        PlanarPose {
+            x: truth.position_m.x,
+            y: truth.position_m.y,
+            yaw: yaw(&truth.attitude),
+        }
+    }
+}
+
+/// What the operator starts after a restart: the rest of the way back, as the camera remembers it.
+fn way_back() -> Script {
+    Script {
+        steps: vec![Step::Follow {
+            mode: Mode::Follow,
+            until: Until::Home,
+        }],
     }
 }
 
@@ -180,14 +246,6 @@ pub fn pose_on_the_ground() -> camera::Pose {
     camera::Pose {
         position_m: Vector3::new(0.0, 0.0, CAMERA_HEIGHT_M),
         attitude: UnitQuaternion::identity(),
-    }
-}
-
-fn planar(estimate: &Estimate) -> PlanarPose {
-    PlanarPose {
-        x: estimate.position_m.x.into(),
-        y: estimate.position_m.y.into(),
-        yaw: estimate.yaw_rad().into(),
     }
 }
 

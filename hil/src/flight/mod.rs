@@ -3,13 +3,14 @@
 //! One loop, no threads, no wall clock: the same scenario is the same flight on every machine.
 
 pub(crate) mod aircraft;
+mod autopilot;
 pub(crate) mod sum_up;
 pub(crate) mod wire;
 
 use std::fmt;
 use std::time::Instant;
 
-use autopilot::app;
+use ::autopilot::app;
 use fake_sensors::camera::tcm8230::Tcm8230;
 use fake_sensors::camera::{PanoramicCamera, PanoramicLens};
 use fake_sensors::world::{UnknownWorld, World};
@@ -19,7 +20,7 @@ use crate::board::camera::Camera;
 use crate::board::emulated::{Emulated, Firmware};
 use crate::board::native::{EXTCLK_HZ, Native};
 use crate::board::{Board, BoardError};
-use crate::record::{Recording, WallSegment};
+use crate::record::{Recording, Side, WallSegment, What};
 use crate::recorder::Recorder;
 use crate::scenario::Scenario;
 use crate::summary::Summary;
@@ -140,12 +141,18 @@ fn fly(
         board.look_from(aircraft.camera_pose());
         let mut to_board = aircraft.tick(now_ms, &from_board);
         record(now_ms, &mut aircraft, &mut recorder);
-        wire.carry_to_camera(&mut to_board);
+        for message in wire.carry_to_camera(&mut to_board) {
+            let by = Side::Autopilot;
+            recorder.deed(now_ms, What::Sent { by, message });
+        }
         board.transmit(&to_board);
         board.advance()?;
         from_board.clear();
         board.receive(&mut from_board);
-        wire.carry_to_autopilot(&mut from_board);
+        for message in wire.carry_to_autopilot(&mut from_board) {
+            let by = Side::Camera;
+            recorder.deed(now_ms, What::Sent { by, message });
+        }
         board.drain_log(&mut log);
         recorder.log(now_ms, log.drain(..));
         if now_ms.is_multiple_of(PROGRESS_PERIOD_MS) {
@@ -200,9 +207,24 @@ pub(crate) fn blank(world: &World, route: &app::Route) -> Recording {
 
 /// Writes down what the aircraft did in this millisecond.
 pub(crate) fn record(now_ms: u64, aircraft: &mut Aircraft, recorder: &mut Recorder) {
+    if let Some(origin) = aircraft.take_new_origin() {
+        recorder.note(
+            now_ms,
+            "warn",
+            "the autopilot counts from a new origin".to_owned(),
+        );
+        recorder.set_origin(origin);
+    }
     let glimpse = aircraft.glimpse();
     for message in aircraft.take_received() {
         recorder.message(now_ms, &message, &glimpse);
+    }
+    for dropped in aircraft.take_dropped() {
+        let (message, why) = (dropped.message.to_owned(), dropped.why.to_string());
+        recorder.link_drop(now_ms, Side::Autopilot, message, why);
+    }
+    for what in aircraft.take_deeds() {
+        recorder.deed(now_ms, what);
     }
     recorder.phase(now_ms, aircraft.phase());
     recorder.track(now_ms, &glimpse);

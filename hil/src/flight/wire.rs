@@ -1,7 +1,7 @@
 //! The wire between aircraft and board: bytes in, bytes out, and what breaks on the way.
 
 use fake_sensors::random::Normal;
-use link::Parser;
+use link::{Message, Parser};
 
 use crate::record::{Recording, Side};
 use crate::summary::{DirectionFigures, LinkFigures};
@@ -32,14 +32,16 @@ impl Wire {
         }
     }
 
-    /// What arrives at the camera of what the autopilot sends.
-    pub fn carry_to_camera(&mut self, bytes: &mut [u8]) {
-        self.to_camera.carry(bytes);
+    /// Turns what the autopilot sends into what arrives at the camera. Returns the messages that were
+    /// sent whole with these bytes.
+    pub fn carry_to_camera(&mut self, bytes: &mut [u8]) -> Vec<Message> {
+        self.to_camera.carry(bytes)
     }
 
-    /// What arrives at the autopilot of what the camera sends.
-    pub fn carry_to_autopilot(&mut self, bytes: &mut [u8]) {
-        self.to_autopilot.carry(bytes);
+    /// Turns what the camera sends into what arrives at the autopilot. Returns the messages that were
+    /// sent whole with these bytes.
+    pub fn carry_to_autopilot(&mut self, bytes: &mut [u8]) -> Vec<Message> {
+        self.to_autopilot.carry(bytes)
     }
 
     /// How many frames each end sent, and how many of them the other one dropped, in a flight whose
@@ -61,12 +63,12 @@ struct Direction {
 }
 
 impl Direction {
-    fn carry(&mut self, bytes: &mut [u8]) {
-        let sent = self.sent.frames(bytes).count();
-        debug_assert!(sent <= bytes.len());
+    fn carry(&mut self, bytes: &mut [u8]) -> Vec<Message> {
+        let sent = self.sent.frames(bytes).map(|frame| frame.message).collect();
         if self.corrupted_share > 0.0 {
             bytes.iter_mut().for_each(|byte| self.disturb(byte));
         }
+        sent
     }
 
     /// Turns a byte into any of the 255 others, now and then.
@@ -123,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_seed_repeats_its_faults_and_directions_differ() {
-        let carried = |seed, direction: fn(&mut Wire, &mut [u8])| {
+        let carried = |seed, direction: fn(&mut Wire, &mut [u8]) -> Vec<Message>| {
             let mut bytes = [0; 1_000];
             direction(&mut Wire::new(0.1, seed), &mut bytes);
             bytes
