@@ -262,11 +262,21 @@ pub struct Recording {
 }
 
 impl Recording {
+    /// Snapshots that the firmware stored on the way out. Where the report of one was lost on the link,
+    /// the index of a later one tells.
+    pub fn snapshots_stored(&self) -> usize {
+        let by_index = self
+            .snapshots
+            .iter()
+            .map(|mark| usize::from(mark.index) + 1);
+        by_index.max().unwrap_or(0).max(self.snapshots.len())
+    }
+
     /// What the route took when the way out ended.
     pub fn memory(&self) -> RouteMemory {
         RouteMemory {
-            snapshots: SNAPSHOT_BYTES * self.snapshots.len(),
-            counts: COUNT_BYTES * self.snapshots.len(),
+            snapshots: SNAPSHOT_BYTES * self.snapshots_stored(),
+            counts: COUNT_BYTES * self.snapshots_stored(),
             vectors: OdometryVector::BYTES * usize::from(self.odometry_stored),
         }
     }

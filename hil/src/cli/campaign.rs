@@ -52,6 +52,9 @@ struct Statistics {
     p95_home_error_m: f64,
     mean_cross_track_rms_m: f64,
     mean_bytes_per_m: f64,
+    mean_flight_s: f64,
+    /// Frames of the link that were dropped, per flight, both ways.
+    mean_link_drops: f64,
     home_errors_m: Vec<f64>,
 }
 
@@ -137,6 +140,11 @@ fn statistics(homing: Homing, summaries: &[Summary]) -> Statistics {
         p95_home_error_m: quantile(&sorted, 0.95),
         mean_cross_track_rms_m: mean(|summary| summary.cross_track_rms_m),
         mean_bytes_per_m: mean(|summary| summary.bytes_per_m),
+        mean_flight_s: mean(|summary| summary.flight_s),
+        mean_link_drops: mean(|summary| {
+            let link = &summary.link;
+            (link.to_camera.frames_dropped + link.to_autopilot.frames_dropped) as f64
+        }),
         home_errors_m,
     }
 }
@@ -144,12 +152,12 @@ fn statistics(homing: Homing, summaries: &[Summary]) -> Statistics {
 /// The statistics for people, without a newline at the end.
 fn in_words(outcome: &Outcome) -> String {
     let mut lines = vec![
-        "homing     flights  completed  <= 0.5 m   mean m    p50 m    p95 m  path rms m  bytes/m"
+        "homing     flights  completed  <= 0.5 m   mean m    p50 m    p95 m  path rms m  bytes/m  flight s  drops"
             .to_owned(),
     ];
     for row in &outcome.settings {
         lines.push(format!(
-            "{:<10} {:>7}  {:>9}  {:>8} {:>8.2} {:>8.2} {:>8.2} {:>11.2} {:>8.1}",
+            "{:<10} {:>7}  {:>9}  {:>8} {:>8.2} {:>8.2} {:>8.2} {:>11.2} {:>8.1} {:>9.0} {:>6.0}",
             row.homing,
             row.flights,
             row.completed,
@@ -158,7 +166,9 @@ fn in_words(outcome: &Outcome) -> String {
             row.p50_home_error_m,
             row.p95_home_error_m,
             row.mean_cross_track_rms_m,
-            row.mean_bytes_per_m
+            row.mean_bytes_per_m,
+            row.mean_flight_s,
+            row.mean_link_drops
         ));
     }
     if let Some(improvement) = outcome.improvement {

@@ -25,6 +25,10 @@ const CAMERA_HEIGHT_M: f32 = 0.04;
 /// seconds to boot, and the operator's way to the button.
 const RESTART_MS: u64 = 5_000;
 
+/// How long the operator looks on while the camera leads nowhere, milliseconds: longer than the longest
+/// vector takes, and than the app rests at home.
+const PATIENCE_MS: u64 = 20_000;
+
 /// Stream of the seed that draws where the wind comes from, clear of the sensors'.
 const WIND_DIRECTION_STREAM: u64 = u64::from_be_bytes(*b"windfrom");
 
@@ -46,8 +50,10 @@ pub struct Aircraft {
     origin: Option<PlanarPose>,
     origin_is_news: bool,
     filter_resets: u32,
-    /// Where the app lets the drone fly.
-    flies_to: Option<WorldPoint>,
+    /// Where the app lets the drone fly, and since when.
+    flies_to: (Option<WorldPoint>, u64),
+    /// The operator has seen that the camera leads nowhere any more.
+    stopped_safely: bool,
     deeds: Vec<What>,
 }
 
@@ -74,7 +80,8 @@ impl Aircraft {
             origin: None,
             origin_is_news: false,
             filter_resets: 0,
-            flies_to: None,
+            flies_to: (None, 0),
+            stopped_safely: false,
             deeds: Vec::new(),
         }
     }
@@ -93,7 +100,8 @@ impl Aircraft {
             Vec::new()
         };
         self.notice_filter_reset();
-        self.notice_deeds();
+        self.notice_deeds(now_ms);
+        self.watch(now_ms);
         if let Some(wind) = &mut self.wind {
             self.vehicle.set_wind(wind.tick());
         }
@@ -127,18 +135,33 @@ impl Aircraft {
         }
     }
 
-    fn notice_deeds(&mut self) {
-        let before = self.flies_to;
-        self.flies_to = self.autopilot.set_point();
-        if let Some(place) = self.flies_to
-            && self.flies_to != before
-            && self.phase() == app::Phase::Following
-        {
-            self.deeds.push(What::FlyTo([place.x, place.y]));
+    fn notice_deeds(&mut self, now_ms: u64) {
+        let set_point = self.autopilot.set_point();
+        if set_point != self.flies_to.0 || self.phase() != app::Phase::Following {
+            self.flies_to = (set_point, now_ms);
+            if let Some(place) = set_point
+                && self.phase() == app::Phase::Following
+            {
+                self.deeds.push(What::FlyTo([place.x, place.y]));
+            }
         }
         if let Some((shift_m, turn_rad)) = self.autopilot.correction() {
             self.deeds.push(What::Correct { shift_m, turn_rad });
         }
+    }
+
+    /// The operator lands a drone that the camera keeps where it is.
+    fn watch(&mut self, now_ms: u64) {
+        let (_, since_ms) = self.flies_to;
+        if self.phase() == app::Phase::Following && now_ms - since_ms >= PATIENCE_MS {
+            self.stopped_safely = true;
+            self.autopilot.app().command_landing();
+        }
+    }
+
+    /// Whether the operator has landed a drone that the camera kept where it was.
+    pub fn stopped_safely(&self) -> bool {
+        self.stopped_safely
     }
 
     /// Where the camera is.

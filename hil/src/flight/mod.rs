@@ -175,7 +175,11 @@ fn fly(
     let recording = recorder.finish();
     let end = sum_up::End {
         completed: outcome == app::Outcome::Completed,
-        outcome: sum_up::in_words(outcome, scenario.homing),
+        outcome: if aircraft.stopped_safely() {
+            sum_up::SAFE_STOP
+        } else {
+            sum_up::in_words(outcome, scenario.homing)
+        },
         flight_s: now_ms as f64 / 1_000.0,
         figures,
         backend: board.name(),

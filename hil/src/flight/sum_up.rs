@@ -36,6 +36,7 @@ pub struct End<'f> {
 pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary {
     let (outbound, inbound) = metrics::paths(recording);
     let outbound_m = metrics::length(&outbound);
+    let snapshots = recording.snapshots_stored();
     let memory_bytes = recording.memory().with_counts();
     let home = recording
         .track
@@ -60,7 +61,7 @@ pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary 
         home_error_m: last.map_or(0.0, |last| last.truth.distance(&home)),
         cross_track_rms_m: metrics::cross_track_rms(&inbound, &outbound),
         odometry_only_error_m: last.map_or(0.0, |last| last.truth.distance(&last.uncorrected)),
-        snapshots: recording.snapshots.len(),
+        snapshots,
         memory_bytes,
         bytes_per_m: if outbound_m > 0.0 {
             memory_bytes as f64 / outbound_m
@@ -110,6 +111,10 @@ fn sorted(values: &[u32]) -> Vec<u32> {
     sorted.sort_unstable();
     sorted
 }
+
+/// How a flight ended in which the camera gave up, for people.
+pub const SAFE_STOP: &str =
+    "safe stop: the camera kept the drone where it was, and the operator landed it";
 
 /// How a flight of the flight app ended, for people.
 pub fn in_words(outcome: Outcome, homing: Homing) -> &'static str {
