@@ -166,9 +166,9 @@ fn is_within(spot: &Spot, [one, other]: &[Spot; 2]) -> bool {
     })
 }
 
-/// A trunk with four tiers of branches, each narrower than the one below.
+/// A trunk with three tiers of branches, each narrower than the one below.
 fn conifer(noise: &mut Normal, spot: Spot, greenery: &Greenery) -> Vec<Solid> {
-    const TIERS: usize = 4;
+    const TIERS: usize = 3;
     let height_m = between(noise, 9.0, 20.0);
     let bare_m = between(noise, 0.08, 0.35) * height_m;
     let reach_m = between(noise, 0.12, 0.17) * height_m;
@@ -184,7 +184,7 @@ fn conifer(noise: &mut Normal, spot: Spot, greenery: &Greenery) -> Vec<Solid> {
     tree
 }
 
-/// A trunk under a crown of four parts.
+/// A trunk under a crown of three parts.
 fn broadleaf(noise: &mut Normal, spot: Spot, greenery: &Greenery) -> Vec<Solid> {
     let height_m = between(noise, 8.0, 16.0);
     let bare_m = between(noise, 0.25, 0.4) * height_m;
@@ -192,8 +192,8 @@ fn broadleaf(noise: &mut Normal, spot: Spot, greenery: &Greenery) -> Vec<Solid> 
     let reach_m = between(noise, 0.16, 0.24) * height_m;
     let leaves = pick(noise, greenery);
     let mut tree = vec![trunk(spot, radius_m, 0.8 * height_m, greenery)];
-    for part in 0..4 {
-        let share = part as f32 / 3.0;
+    for part in 0..3 {
+        let share = part as f32 / 2.0;
         let stray = [0, 1].map(|_| between(noise, -0.5, 0.5) * reach_m);
         let middle_m = bare_m + (height_m - bare_m) * (0.3 + 0.5 * share);
         let width_m = reach_m * between(noise, 0.6, 0.9) * (1.1 - 0.4 * share);

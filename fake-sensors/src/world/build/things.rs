@@ -193,7 +193,7 @@ impl Builder<'_> {
             part(Form::Column, [-0.16, -0.2, 1.1], arm, jacket),
             part(Form::Ball, [0.0, 0.0, 1.62], [0.105, 0.105, 0.14], skin),
         ];
-        self.place(solids, person.route.as_ref(), &span)
+        self.place(solids, [x, y], person.route.as_ref(), &span)
     }
 
     /// A material without a description: even, of `gain` times the reflectance of `plain`.
@@ -228,7 +228,7 @@ impl Builder<'_> {
             let centre = solid.centre + shift;
             let copy = Solid { centre, ..solid };
             self.outline(&copy);
-            self.place(vec![copy], route, span)?;
+            self.place(vec![copy], [centre.x, centre.y], route, span)?;
         }
         Ok(())
     }
@@ -276,10 +276,11 @@ impl Builder<'_> {
             .collect())
     }
 
-    /// Places solids that stay together: on their own, or along a route.
+    /// Places solids that stay together: where they are, or along a route from `start`.
     fn place(
         &mut self,
         solids: Vec<Solid>,
+        start: Spot,
         route: Option<&Route>,
         span: &Range<usize>,
     ) -> Result<(), Mistake> {
@@ -289,15 +290,12 @@ impl Builder<'_> {
             }
             return Ok(());
         };
-        let start = solids
-            .first()
-            .map_or_else(Vector3::zeros, |solid| solid.centre);
         let places: Vec<Spot> = route
             .through
             .iter()
             .map(|place| {
                 let [x, y] = metres(*place);
-                [x - start.x, y - start.y]
+                [x - start[0], y - start[1]]
             })
             .collect();
         let ahead_s = route.ahead_s.map_or(0.0, |ahead| ahead.get());

@@ -21,7 +21,7 @@ const WAITING: usize = 64;
 /// Up to this many solids are split where it is best, more in the middle.
 const SWEPT: usize = 4_096;
 /// From this many times a box's half diagonal on, half a pixel's width sees its haze.
-const BLURRED: f32 = 0.3;
+const BLURRED: f32 = 0.22;
 /// Boxes with more solids than this have no haze: they are never that far away.
 const HAZY: usize = 512;
 

@@ -5,6 +5,8 @@
 //! solid tells the *share* of the pixel's square that it covers: the overlap of the square with its
 //! outline, along each of the two directions for itself. It changes continuously with the pose.
 
+use core::f32::consts::FRAC_PI_4;
+
 use nalgebra::Vector3;
 
 use super::ray::{Ray, inverse};
@@ -123,7 +125,8 @@ impl Solid {
             half_width_m,
             depth_m: radius_m - aside_m,
             reach_m: radius_m,
-            other_share: (self.half.z / half_width_m).min(1.0),
+            // A disc fills that much of its square; it shows once the disc is the smaller.
+            other_share: (FRAC_PI_4 * self.half.z / half_width_m).min(1.0),
         })
     }
 
@@ -161,7 +164,13 @@ impl Solid {
         if leave_m.max(enter_m) <= 0.0 {
             return None;
         }
-        let distance_m = enter_m.min(0.5 * (enter_m + leave_m)).max(0.0);
+        // A ray that misses enters one pair of faces after it has left another: it is nearest between.
+        let abreast_m = (self.centre - ray.origin).dot(&ray.direction);
+        let distance_m = if enter_m > leave_m {
+            abreast_m.max(leave_m).min(enter_m).max(0.0)
+        } else {
+            enter_m.max(0.0)
+        };
         let half_width_m = ray.half_mean * distance_m;
         Some(Touch {
             distance_m,

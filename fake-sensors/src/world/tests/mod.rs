@@ -99,3 +99,7 @@ fn no_ray_slips_out_between_walls() {
         }
     }
 }
+
+mod descriptions;
+mod library;
+mod seeing;
