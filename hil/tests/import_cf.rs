@@ -251,6 +251,27 @@ fn files_of_two_flights_are_told_apart() {
     assert!(flown.recording.log.iter().any(told));
 }
 
+#[test]
+fn a_pause_of_the_rows_is_told_and_nothing_is_drawn_in_it() {
+    let log = "Timestamp,stateEstimate.x,stateEstimate.y\n0,9,0\n5000,0,0\n6000,0,0\n14000,4,0\n15000,4,0\n";
+    let flown = import(&[LogFile {
+        name: "a.csv".into(),
+        bytes: log.into(),
+    }])
+    .expect("a log");
+    let told = |line: &hil::record::LogLine| line.text.contains("without a row, once 8.0 s");
+    assert!(flown.recording.log.iter().any(told));
+    let track = &flown.recording.track;
+    let known = |t: f64| (5.0..=6.0).contains(&t) || (14.0..=15.0).contains(&t);
+    assert!(track.iter().all(|point| known(point.t)));
+    assert_eq!(track.len(), 22);
+    assert!(
+        track
+            .iter()
+            .any(|point| point.t == 14.5 && point.truth.x == 4.0)
+    );
+}
+
 /// Every error but that of a file that cannot be read says in which line.
 fn names_a_line(error: &ImportError) -> bool {
     matches!(

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use super::series::{Series, Variables, share};
+use super::series::{GAP_MS, Series, Variables, share};
 use crate::record::PlanarPose;
 
 /// Time between two points of the track, ms.
@@ -89,15 +89,16 @@ impl<'v> Track<'v> {
         let mut instants = Vec::new();
         let mut next = 0;
         for pair in times.windows(2) {
-            next = pair[0].next_multiple_of(TRACK_PERIOD_MS).max(next);
-            if !self.is_known(next) {
+            if pair[1] - pair[0] > GAP_MS {
                 continue;
             }
+            next = pair[0].next_multiple_of(TRACK_PERIOD_MS).max(next);
             while next <= pair[1] {
                 instants.push(next);
                 next += TRACK_PERIOD_MS;
             }
         }
+        instants.retain(|ms| self.is_known(*ms));
         instants
     }
 

@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use super::estimate::Track;
-use super::series::Variables;
+use super::series::{GAP_MS, Variables};
 use super::table::Table;
 
 /// A line of the flight's log before the flight.
@@ -52,6 +52,10 @@ pub fn notes(
     for (file, table) in tables.iter().enumerate() {
         of_file(file, tables, table, clock, &mut notes);
     }
+    if tables.iter().any(|table| table.wrapped) {
+        let text = "the tick wrapped at 24 bits; flight time goes on".to_owned();
+        notes.push(info(text));
+    }
     notes.push(info(held(tables)));
     of_track(track, &mut notes);
     for (names, what) in GROUPS {
@@ -87,9 +91,11 @@ fn of_file(file: usize, tables: &[Table], table: &Table, clock: &Clock, notes: &
         seconds(last),
         table.variables.join(", ")
     )));
-    if table.wrapped {
-        notes.push(info(format!(
-            "{name}: the tick wrapped at 24 bits; flight time goes on"
+    if let Some((count, longest)) = gaps(table) {
+        notes.push(warn(format!(
+            "{name}: {count} times more than {} s without a row, once {:.1} s: nothing is known there",
+            GAP_MS / 1_000,
+            seconds(longest)
         )));
     }
     if table.cut {
@@ -109,6 +115,13 @@ fn of_file(file: usize, tables: &[Table], table: &Table, clock: &Clock, notes: &
             "{name} shares no time with the other files: is it of another flight?"
         )));
     }
+}
+
+/// How often and how long at most the rows pause: the radio was lost, or the log was stopped.
+fn gaps(table: &Table) -> Option<(usize, u64)> {
+    let steps = table.rows.windows(2).map(|pair| pair[1].ms - pair[0].ms);
+    let gaps: Vec<u64> = steps.filter(|step| *step > GAP_MS).collect();
+    Some((gaps.len(), *gaps.iter().max()?))
 }
 
 /// What sampling does to messages.

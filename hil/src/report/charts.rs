@@ -6,7 +6,7 @@ use super::plot::{Events, Level, Plot, Series, TimeAxis};
 use super::svg::Point;
 use super::ticks::Range;
 use super::{errors, histogram, number, phase};
-use crate::record::{FrameMark, Recording};
+use crate::record::{FrameMark, Recording, Reference};
 use crate::summary::Summary;
 
 /// From the first to the last thing recorded.
@@ -22,8 +22,33 @@ pub fn time_axis(recording: &Recording) -> TimeAxis {
     }
 }
 
-/// How far belief and flight were off.
+/// How far belief and flight were off; without the truth, how far the way back was from the way out.
 pub fn errors(recording: &Recording, summary: &Summary, time: &TimeAxis) -> Markup {
+    let (heading, plots) = match recording.reference {
+        Reference::Truth => {
+            let [position, heading] = belief_plots(recording);
+            let plots = vec![position, heading, cross_track(recording, summary, None)];
+            ("Error over time", plots)
+        }
+        Reference::Estimate => {
+            let plot = cross_track(recording, summary, Some(realignments(recording)));
+            (
+                "Way back and way out, by the drone's own estimate",
+                vec![plot],
+            )
+        }
+    };
+    html! {
+        section {
+            h2 { (heading) }
+            p.note { "The strip below each plot tells the phase: red and thin outbound, yellow by odometry, blue and thick by camera." }
+            @for plot in plots { figure { (plot.render(time)) } }
+        }
+    }
+}
+
+/// Belief less truth, place and heading.
+fn belief_plots(recording: &Recording) -> [Plot; 2] {
     let track = &recording.track;
     let position = belief_plot(
         recording,
@@ -37,20 +62,26 @@ pub fn errors(recording: &Recording, summary: &Summary, time: &TimeAxis) -> Mark
         errors::heading(track, |point| point.uncorrected),
         errors::heading(track, |point| point.estimate),
     );
-    let cross_track = Plot {
+    [position, heading]
+}
+
+fn cross_track(recording: &Recording, summary: &Summary, events: Option<Events>) -> Plot {
+    Plot {
         levels: rms_level(summary),
+        events,
         ..single_curve(
             "Distance of the way back from the way out",
             "m",
             errors::cross_track(recording),
         )
-    };
-    html! {
-        section {
-            h2 { "Error over time" }
-            p.note { "The strip below each plot tells the phase: red and thin outbound, yellow by odometry, blue and thick by camera." }
-            @for plot in [position, heading, cross_track] { figure { (plot.render(time)) } }
-        }
+    }
+}
+
+/// When the camera told the filter where it really was.
+fn realignments(recording: &Recording) -> Events {
+    Events {
+        label: "realigned at a snapshot",
+        times: recording.corrections.iter().map(|mark| mark.t).collect(),
     }
 }
 
@@ -79,10 +110,7 @@ fn belief_plot(
             },
         ],
         levels: Vec::new(),
-        events: Some(Events {
-            label: "realigned at a snapshot",
-            times: recording.corrections.iter().map(|mark| mark.t).collect(),
-        }),
+        events: Some(realignments(recording)),
     }
 }
 

@@ -6,10 +6,13 @@
 //! the wall time that the summary brings along.
 
 mod charts;
+mod conditions;
 mod errors;
 mod figures;
 mod histogram;
 mod horizon;
+mod key_figures;
+mod link;
 mod log;
 mod map;
 mod memory;

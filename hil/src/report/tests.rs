@@ -2,8 +2,10 @@
 
 use super::{html, picture, sample};
 use crate::record::{
-    LogLine, OdometryMark, Phase, PlanarPose, Recording, SnapshotMark, TrackPoint, WallSegment,
+    LinkDrop, LogLine, OdometryMark, Phase, PlanarPose, Recording, Reference, Side, SnapshotMark,
+    TrackPoint, WallSegment,
 };
+use crate::summary::Summary;
 
 fn at(x: f64, y: f64) -> PlanarPose {
     PlanarPose { x, y, yaw: 0.0 }
@@ -182,6 +184,121 @@ fn values_that_are_not_finite_break_nothing() {
         assert_well_formed(&document);
         assert_only_numbers(&document);
     }
+}
+
+/// The small flight as it is known from the logs of the real thing.
+fn imported_flight() -> (Recording, Summary) {
+    let mut recording = Recording {
+        reference: Reference::Estimate,
+        plan: Vec::new(),
+        ..small_flight()
+    };
+    let unknown = at(f64::NAN, f64::NAN);
+    for point in &mut recording.track {
+        point.uncorrected = unknown;
+    }
+    recording.snapshots[0].coefficients.clear();
+    recording.log.push(LogLine {
+        t: 0.0,
+        source: "rig",
+        level: "warn".into(),
+        text: "headings: not known".into(),
+    });
+    let summary = Summary {
+        backend: "cfclient",
+        route: "vectors-20230531".into(),
+        outbound_m: 1.0,
+        inbound_m: 1.0,
+        home_error_m: 0.3,
+        odometry_only_error_m: f64::NAN,
+        spacing_m: f64::NAN,
+        realtime_factor: f64::NAN,
+        snapshots: 1,
+        memory_bytes: 20,
+        ..Summary::default()
+    };
+    (recording, summary)
+}
+
+#[test]
+fn a_flight_known_by_its_estimate_alone_never_speaks_of_the_truth() {
+    let (recording, summary) = imported_flight();
+    let (page, picture) = (html(&recording, &summary), picture(&recording, &summary));
+    for document in [&page, &picture] {
+        assert_well_formed(document);
+        assert_only_numbers(document);
+        for phrase in [
+            "truly",
+            "true start",
+            "less truth",
+            "Home error",
+            "uncorrected</text>",
+            "odometry alone",
+        ] {
+            assert!(!document.contains(phrase), "{phrase}");
+        }
+    }
+    assert!(
+        page.contains("1 m out and 1 m back, by the drone&#39;s own estimate")
+            || page.contains("1 m out and 1 m back, by the drone's own estimate")
+    );
+    assert!(page.contains("What these logs hold") && page.contains("headings: not known"));
+}
+
+#[test]
+fn what_is_not_known_is_not_shown() {
+    let (recording, summary) = imported_flight();
+    let page = html(&recording, &summary);
+    for phrase in [
+        "Camera frames dropped",
+        "Link frames dropped",
+        "CPU load",
+        "Flash",
+        "Static RAM",
+        "Real-time factor",
+        "<h2>Exposure",
+        "<h2>Processor",
+        "<h2>Link",
+        "<dt>seed",
+        "<dt>world",
+        "<dt>frames_sent",
+        "remembered horizon",
+    ] {
+        assert!(!page.contains(phrase), "{phrase}");
+    }
+    assert!(page.contains("The coefficients of the snapshots are not known."));
+}
+
+#[test]
+fn the_page_names_every_dropped_frame_and_says_when_there_was_none() {
+    let (_, summary) = sample::nothing();
+    let mut recording = small_flight();
+    let none = "No frame of the link was dropped.";
+    assert!(html(&recording, &summary).contains(none));
+    recording.link_drops.push(LinkDrop {
+        t: 1.5,
+        side: Side::Autopilot,
+        message: "INS_CORRECTION".into(),
+        why: "checksum & all".into(),
+    });
+    let page = html(&recording, &summary);
+    assert!(!page.contains(none));
+    for part in [
+        "<td class=\"count\">1.500</td>",
+        ">INS_CORRECTION</td>",
+        ">checksum &amp; all</td>",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn the_page_tells_the_conditions_of_the_flight() {
+    let (recording, mut summary) = sample::nothing();
+    assert!(!html(&recording, &summary).contains("<b>Conditions</b>"));
+    summary.conditions.corrupted_share = 0.01;
+    let page = html(&recording, &summary);
+    assert!(page.contains("<b>Conditions</b>: 1 % of the link's bytes corrupted"));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use super::view::View;
 use super::{labels, legend};
-use crate::record::{Phase, PlanarPose, Recording, SnapshotMark, TrackPoint};
+use crate::record::{Phase, PlanarPose, Recording, Reference, SnapshotMark, TrackPoint};
 use crate::report::svg::{self, Point, px};
 use crate::report::ticks::{self, Range};
 use crate::report::{number, phase};
@@ -86,8 +86,10 @@ pub fn flight(recording: &Recording, view: &View, most_arrows: usize) -> Markup 
     let marks: Vec<Point> = end.into_iter().chain([home]).collect();
     html! {
         g clip-path="url(#map-frame)" {
-            path class="line uncorrected s-uncorrected" d=(path(view, track, |point| point.uncorrected)) {}
-            path class="line estimate s-muted" d=(path(view, track, |point| point.estimate)) {}
+            @if recording.reference == Reference::Truth {
+                path class="line uncorrected s-uncorrected" d=(path(view, track, |point| point.uncorrected)) {}
+                path class="line estimate s-muted" d=(path(view, track, |point| point.estimate)) {}
+            }
             @for (phase, piece) in out {
                 path class=(phase::line_class(phase)) d=(path(view, piece, |point| point.truth)) {}
             }

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::view::View;
-use crate::record::Phase;
+use crate::record::{Phase, Recording, Reference};
 use crate::report::number;
 use crate::report::phase;
 use crate::report::svg::px;
@@ -12,57 +12,53 @@ use crate::report::ticks;
 /// Height of one entry, user units.
 const ROW: f64 = 23.0;
 
-/// Number of entries.
-const ROWS: usize = 11;
-
 /// Height of the whole legend, user units.
-pub const HEIGHT: f64 = ROW * ROWS as f64;
+pub fn height(recording: &Recording) -> f64 {
+    ROW * entries(recording).len() as f64
+}
 
 /// Explains every kind of mark on the map, from the given place downwards.
-pub fn legend(left: f64, top: f64) -> Markup {
-    let line = |class: &'static str| html! { path class=(class) d="M0 0h34" {} };
-    let entries: [(Markup, &str); ROWS] = [
-        (
-            line(phase::line_class(Phase::Outbound)),
-            phase::label(Phase::Outbound),
-        ),
-        (
-            line(phase::line_class(Phase::Odometry)),
-            phase::label(Phase::Odometry),
-        ),
-        (
-            line(phase::line_class(Phase::Homing)),
-            phase::label(Phase::Homing),
-        ),
-        (
-            html! { path class="arrow s-ink" d="M3 0h26m-5 -3.5l5 3.5l-5 3.5" {} },
-            "homing vectors",
-        ),
-        (dot(), "snapshots, numbered"),
-        (home_mark([17.0, 0.0]), "home, the true start"),
-        (end_mark([17.0, 0.0]), "end of the flight"),
-        (line("line estimate s-muted"), "the filter's estimate"),
-        (
-            line("line uncorrected s-uncorrected"),
-            "the same, uncorrected",
-        ),
-        (
-            html! { path class="route s-route" d="M4 0h26" {} },
-            "scripted route",
-        ),
-        (
-            html! { path class="wall s-soft" d="M2 0h30" {} },
-            "walls and panels",
-        ),
-    ];
+pub fn legend(recording: &Recording, left: f64, top: f64) -> Markup {
     html! {
-        @for (row, (mark, label)) in entries.into_iter().enumerate() {
+        @for (row, (mark, label)) in entries(recording).into_iter().enumerate() {
             g transform=(format!("translate({} {})", px(left), px(top + ROW * row as f64 + 8.0))) {
                 (mark)
                 text class="f-ink" x="46" y="4" { (label) }
             }
         }
     }
+}
+
+fn entries(recording: &Recording) -> Vec<(Markup, &'static str)> {
+    let line = |class: &'static str| html! { path class=(class) d="M0 0h34" {} };
+    let flown = [Phase::Outbound, Phase::Odometry, Phase::Homing];
+    let mut entries: Vec<(Markup, &str)> = flown
+        .map(|phase| (line(phase::line_class(phase)), phase::label(phase)))
+        .to_vec();
+    let arrow = html! { path class="arrow s-ink" d="M3 0h26m-5 -3.5l5 3.5l-5 3.5" {} };
+    entries.push((arrow, "homing vectors"));
+    entries.push((dot(), "snapshots, numbered"));
+    let is_truth = recording.reference == Reference::Truth;
+    let home = match is_truth {
+        true => "home, the true start",
+        false => "home, the filter's origin",
+    };
+    entries.push((home_mark([17.0, 0.0]), home));
+    entries.push((end_mark([17.0, 0.0]), "end of the flight"));
+    if is_truth {
+        entries.push((line("line estimate s-muted"), "the filter's estimate"));
+        let uncorrected = line("line uncorrected s-uncorrected");
+        entries.push((uncorrected, "the same, uncorrected"));
+    }
+    if !recording.route.is_empty() {
+        let route = html! { path class="route s-route" d="M4 0h26" {} };
+        entries.push((route, "scripted route"));
+    }
+    if !recording.plan.is_empty() {
+        let wall = html! { path class="wall s-soft" d="M2 0h30" {} };
+        entries.push((wall, "walls and panels"));
+    }
+    entries
 }
 
 fn dot() -> Markup {

@@ -10,7 +10,7 @@ use maud::{Markup, html};
 use self::view::View;
 use super::svg::px;
 use super::{figures, number, style};
-use crate::record::Recording;
+use crate::record::{Recording, Reference};
 use crate::summary::Summary;
 
 /// User units across, map and legend, on the page.
@@ -57,14 +57,14 @@ pub fn picture(recording: &Recording, summary: &Summary) -> Markup {
     let (width, height) = (PICTURE_WIDTH + 2.0 * MARGIN, height + 2.0 * MARGIN);
     html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("{0} {0} {1} {2}", px(-MARGIN), px(width), px(height)))
-            width=(px(width)) height=(px(height)) role="img" aria-label=(figures::headline(summary)) {
-            title { (figures::headline(summary)) }
+            width=(px(width)) height=(px(height)) role="img" aria-label=(figures::headline(recording, summary)) {
+            title { (figures::headline(recording, summary)) }
             style { (maud::PreEscaped(style::figure())) }
             rect class="f-paper" x=(px(-MARGIN)) y=(px(-MARGIN)) width=(px(width)) height=(px(height)) {}
-            text class="f-ink title" x="0" y="16" { (figures::headline(summary)) }
+            text class="f-ink title" x="0" y="16" { (figures::headline(recording, summary)) }
             text class="f-muted subtitle" x="0" y="38" { (figures::subline(summary)) }
             (scene(recording, &view))
-            (key_figures(summary, PICTURE_WIDTH - LEGEND, TITLE + legend::HEIGHT + 14.0))
+            (key_figures(recording, summary, PICTURE_WIDTH - LEGEND, TITLE + legend::height(recording) + 14.0))
         }
     }
 }
@@ -78,39 +78,28 @@ fn scene(recording: &Recording, view: &View) -> Markup {
         (layers::ground(recording, view))
         (layers::flight(recording, view, MOST_ARROWS))
         (legend::scale_and_north(view))
-        (legend::legend(view.frame.left + view.frame.width + GAP, view.frame.top))
+        (legend::legend(recording, view.frame.left + view.frame.width + GAP, view.frame.top))
     }
 }
 
-/// Four figures below the legend of the picture.
-fn key_figures(summary: &Summary, left: f64, top: f64) -> Markup {
+/// Up to four figures below the legend of the picture: those that are known.
+fn key_figures(recording: &Recording, summary: &Summary, left: f64, top: f64) -> Markup {
+    let (home, alone) = match recording.reference {
+        Reference::Truth => ("from home at the end", summary.odometry_only_error_m),
+        Reference::Estimate => ("from the start, as it believed", f64::NAN),
+    };
     let figures = [
-        (
-            number::fixed(summary.home_error_m, 2),
-            "m",
-            "from home at the end",
-        ),
-        (
-            number::fixed(summary.odometry_only_error_m, 2),
-            "m",
-            "by odometry alone",
-        ),
-        (
-            number::fixed(summary.cross_track_rms_m, 2),
-            "m",
-            "RMS off the way out",
-        ),
-        (
-            number::fixed(summary.bytes_per_m, 1),
-            "B/m",
-            "of route memory",
-        ),
+        (summary.home_error_m, 2, "m", home),
+        (alone, 2, "m", "by odometry alone"),
+        (summary.cross_track_rms_m, 2, "m", "RMS off the way out"),
+        (summary.bytes_per_m, 1, "B/m", "of route memory"),
     ];
+    let known = figures.into_iter().filter(|(value, ..)| value.is_finite());
     html! {
-        @for (row, (value, unit, label)) in figures.into_iter().enumerate() {
+        @for (row, (value, decimals, unit, label)) in known.enumerate() {
             @let y = top + 48.0 * row as f64 + 20.0;
             text x=(px(left)) y=(px(y)) {
-                tspan class="f-ink big" { (value) }
+                tspan class="f-ink big" { (number::fixed(value, decimals)) }
                 tspan class="f-muted" dx="5" { (unit) }
             }
             text class="f-muted" x=(px(left)) y=(px(y + 17.0)) { (label) }

@@ -1,5 +1,6 @@
 //! The route memory byte by byte: snapshots, odometry counts, odometry vectors.
 
+mod places;
 mod totals;
 
 use maud::{Markup, html};
@@ -8,7 +9,7 @@ use nav::spectrum::STORED_FREQUENCIES;
 
 use super::svg::px;
 use super::{horizon, number};
-use crate::record::{OdometryMark, Recording, SnapshotMark};
+use crate::record::{OdometryMark, Recording, Reference, SnapshotMark};
 
 /// Metres of one count of an odometry vector (van Dijk et al. 2024, Fig. 8).
 const METRES_PER_COUNT: f64 = 0.1;
@@ -24,6 +25,8 @@ struct Scale {
     largest: f64,
     /// Deviation of the horizon that is black or white, luma.
     full: f64,
+    /// Whether the true places are known.
+    is_truth: bool,
 }
 
 /// Totals, then every snapshot with the vectors that lead back to it.
@@ -40,13 +43,17 @@ pub fn memory(recording: &Recording, outbound_m: f64) -> Markup {
         .map(|mark| mark.coefficients.len())
         .max()
         .unwrap_or(0);
+    if coefficients == 0 && recording.reference == Reference::Estimate {
+        return html! { (totals::totals(recording, outbound_m)) (places::places(recording)) };
+    }
+    let is_truth = recording.reference == Reference::Truth;
     html! {
         (totals::totals(recording, outbound_m))
         p.note {
             "Each snapshot is a row: its coefficients as bars, as bytes, and as signed numbers. The remembered horizon is drawn from them alone "
             "(one count is " (number::fixed(COUNT_LUMA[0].into(), 2)) " luma at the first frequency and " (number::fixed(COUNT_LUMA[STORED_FREQUENCIES - 1].into(), 2)) " at the last; the mean is not stored). "
             "The count is the height of the odometry stack, low byte first; the vectors are those that lead back to the snapshot, in the order in which they are followed. "
-            "“Off” is how far the drone was from where it believed it was."
+            @if is_truth { "“Off” is how far the drone was from where it believed it was." }
             @if unseen > 0 {
                 " " (unseen) " of the vectors are not listed: they were not followed, or several were left behind in one step."
             }
@@ -60,7 +67,7 @@ pub fn memory(recording: &Recording, outbound_m: f64) -> Markup {
             @for (place, mark) in snapshots.iter().enumerate() {
                 @let above = snapshots.get(place + 1).map_or(usize::MAX, |next| usize::from(next.odometry_count));
                 @let vectors = vectors(&recording.odometry, usize::from(mark.odometry_count), above);
-                (row(mark, &vectors, Scale { coefficients, largest, full }))
+                (row(mark, &vectors, Scale { coefficients, largest, full, is_truth }))
             }
             @if snapshots.is_empty() {
                 (row_without_snapshot(&vectors(&recording.odometry, 0, usize::MAX), coefficients))
@@ -98,7 +105,7 @@ fn row(mark: &SnapshotMark, vectors: &[OdometryMark], scale: Scale) -> Markup {
                     span {
                         (number::fixed(mark.truth.x, 2)) ", " (number::fixed(mark.truth.y, 2)) " m" br;
                         "at " (number::fixed(mark.t, 1)) " s" br;
-                        (number::fixed(mark.believed.distance(&mark.truth), 2)) " m off"
+                        @if scale.is_truth { (number::fixed(mark.believed.distance(&mark.truth), 2)) " m off" }
                     }
                 }
                 td.strip rowspan="3" { (horizon::glyph(&mark.coefficients, scale.full)) }

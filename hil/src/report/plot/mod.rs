@@ -2,11 +2,13 @@
 //! axis a strip that tells the phase of the flight.
 
 mod axes;
+mod strip;
 
 use maud::{Markup, html};
 
 pub use self::axes::TimeAxis;
 use self::axes::{Scales, most_ticks};
+pub use self::strip::Strip;
 use super::svg::{self, Point, px};
 use super::ticks::{self, Range};
 
