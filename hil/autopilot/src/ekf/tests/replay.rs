@@ -226,6 +226,26 @@ fn a_recording_that_agrees_is_within_the_limits_and_one_that_does_not_is_not() {
     }
 }
 
+#[test]
+fn nothing_compared_or_no_number_once_is_never_within() {
+    let rows = format!("{EKF_HEADER}{AT_REST_ROW}{AT_REST_ROW}");
+    let recording = parse(&still_imu(10), EVENTS_HEADER, &rows).expect("a sound recording");
+    let within = |recording: &Recording| {
+        let found = deviation(recording, Parameters::default()).expect("no events");
+        found.within(&Limits::FIRMWARE)
+    };
+    assert!(within(&recording));
+
+    let mut empty = recording.clone();
+    empty.references.clear();
+    assert!(!within(&empty));
+
+    // The second, good row must not wipe out the first.
+    let mut senseless = recording;
+    senseless.references[0].position_m.x = f32::NAN;
+    assert!(!within(&senseless));
+}
+
 proptest! {
     #[test]
     fn no_text_whatever_makes_the_reader_panic(
