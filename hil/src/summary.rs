@@ -4,14 +4,14 @@ use serde::Serialize;
 
 use crate::scenario::Conditions;
 
-/// `summary.json` of a flight.
+/// `summary.json` of a flight. A length, time or factor that is not known is NaN, null in the file.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
     /// The drone followed the route to its first snapshot and landed.
     pub completed: bool,
     /// Why the flight ended, for people.
     pub outcome: String,
-    /// `emulator` or `native`.
+    /// `emulator`, `native`, or `cfclient` where it was imported.
     pub backend: &'static str,
     /// Seed of world, sensors and camera noise.
     pub seed: u64,

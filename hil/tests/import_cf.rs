@@ -64,6 +64,10 @@ fn the_phases_are_those_that_were_flown() {
         .count();
     // At each of the changes, by at most: the climb and the sinking above half the height, and the handshake.
     assert!(differing < 60, "{differing} of {} points", pairs.count());
+    let track = &IMPORTED.recording.track;
+    for end in [track.first(), track.last()] {
+        assert_eq!(end.map(|point| point.phase), Some(Phase::Ground));
+    }
     for phase in [Phase::Outbound, Phase::Odometry, Phase::Homing] {
         let flown = |flown: &Flown| {
             let track = flown.recording.track.iter();
@@ -234,6 +238,19 @@ fn what_is_missing_is_told_and_the_rest_is_drawn() {
     // The flight app notes where it took its vectors: a track, where there is no other.
     let vectors = only("vector");
     assert!(vectors.track.len() > 100);
+    let led = FLOWN.recording.vectors[0].t + 1.0;
+    let whole_track = &IMPORTED.recording.track;
+    for point in vectors.track.iter().filter(|point| point.t > led) {
+        let whole = whole_track
+            .iter()
+            .find(|whole| (whole.t - point.t).abs() < 0.06);
+        let apart = whole.map(|whole| whole.truth.distance(&point.truth));
+        assert!(
+            apart.is_none_or(|apart| apart < 0.5),
+            "{} s: {apart:?} m",
+            point.t
+        );
+    }
     assert!(told(&vectors, "not known for want of stateEstimate.z"));
     assert!(told(&vectors, "not known for want of vh.v_source"));
 }

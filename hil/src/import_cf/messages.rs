@@ -242,6 +242,7 @@ mod tests {
         let mut counter = Counter(200);
         assert_eq!(counter.count(0), 0);
         assert_eq!(Counter(5).count(250), 250);
+        assert_eq!(Counter(200).count(72), 72);
     }
 
     #[test]

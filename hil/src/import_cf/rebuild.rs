@@ -19,13 +19,13 @@ const UNKNOWN: PlanarPose = PlanarPose {
 };
 
 /// Something at an instant.
-#[derive(Clone, Debug)]
-enum Event {
-    Vector(Vector),
-    Map(Map),
-    Correction(InsCorrection),
-    Point(MeasuringPoint),
-    Step(u8),
+#[derive(Clone, Copy, Debug)]
+enum Event<'m> {
+    Vector(&'m Vector),
+    Map(&'m Map),
+    Correction(&'m InsCorrection),
+    Point(&'m MeasuringPoint),
+    Step(&'m u8),
     /// A tenth of a second.
     Track,
 }
@@ -58,7 +58,7 @@ pub fn recording(
 }
 
 /// All events by time; at the same time messages come before the track.
-fn in_order(track: Option<&Track>, messages: &Messages) -> Vec<(u64, Event)> {
+fn in_order<'m>(track: Option<&Track>, messages: &'m Messages) -> Vec<(u64, Event<'m>)> {
     let mut events = Vec::new();
     events.extend(of(&messages.maps, Event::Map));
     events.extend(of(&messages.vectors, Event::Vector));
@@ -71,13 +71,13 @@ fn in_order(track: Option<&Track>, messages: &Messages) -> Vec<(u64, Event)> {
     events
 }
 
-fn of<T: Clone>(
-    messages: &[(u64, T)],
-    event: fn(T) -> Event,
-) -> impl Iterator<Item = (u64, Event)> {
+fn of<'m, T>(
+    messages: &'m [(u64, T)],
+    event: fn(&'m T) -> Event<'m>,
+) -> impl Iterator<Item = (u64, Event<'m>)> {
     messages
         .iter()
-        .map(move |(ms, message)| (*ms, event(message.clone())))
+        .map(move |(ms, message)| (*ms, event(message)))
 }
 
 struct Player<'t> {
@@ -104,8 +104,10 @@ impl Player<'_> {
 
     fn play(&mut self, ms: u64, event: Event) {
         match event {
-            Event::Vector(vector) => self.message(ms, &Message::Vector(vector)),
-            Event::Correction(correction) => self.message(ms, &Message::InsCorrection(correction)),
+            Event::Vector(vector) => self.message(ms, &Message::Vector(vector.clone())),
+            Event::Correction(correction) => {
+                self.message(ms, &Message::InsCorrection(correction.clone()));
+            }
             Event::Map(map) => self.map(ms, map),
             Event::Point(point) => self.recorder.note(
                 ms,
@@ -126,15 +128,15 @@ impl Player<'_> {
         }
     }
 
-    fn map(&mut self, ms: u64, map: Map) {
+    fn map(&mut self, ms: u64, map: &Map) {
         if self.phase == Phase::Recording {
             let estimate = self.glimpse(ms).estimate;
-            if let Some(remark) = self.snapshots.map(ms as f64 / 1_000.0, &map, estimate) {
+            if let Some(remark) = self.snapshots.map(ms as f64 / 1_000.0, map, estimate) {
                 self.recorder.note(ms, "warn", in_words(remark));
             }
         }
         self.message(ms, &Message::Map(map.clone()));
-        self.map = Some(map);
+        self.map = Some(map.clone());
     }
 
     fn message(&mut self, ms: u64, message: &Message) {
