@@ -4,7 +4,10 @@ use crate::record::{Phase, PlanarPose, Recording, TrackPoint};
 
 /// True length of a path, metres.
 pub fn length(path: &[PlanarPose]) -> f64 {
-    path.windows(2).map(|pair| pair[0].distance(&pair[1])).sum()
+    // Not sum(), whose sum of nothing is -0.
+    path.windows(2)
+        .map(|pair| pair[0].distance(&pair[1]))
+        .fold(0.0, |length, step| length + step)
 }
 
 /// True positions of the way out and of the way back.

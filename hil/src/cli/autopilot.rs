@@ -43,20 +43,16 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     let scenario = arguments.scenario.scenario(arguments.seed);
-    if scenario.conditions.restart_s.is_some() {
-        return Err(
-            "--restart-autopilot is for `hil fly`; here, end this program and start it again"
-                .into(),
-        );
-    }
+    let live = &arguments.live;
+    let pose = arguments.pose.or_else(|| beside(live.link()));
+    live.beside(pose)?;
     let name = format!("live-autopilot-{}-{}", scenario.route.name(), scenario.seed);
     let out = prepare(arguments.out.as_ref(), &name)?;
     let stop = Stop::on_signals()?;
-    let live = &arguments.live;
     let setup = AutopilotSetup {
         common: live.common(&stop),
         scenario,
-        pose: arguments.pose.or_else(|| beside(live.link())),
+        pose,
     };
     let flown = fly_aircraft(&setup, &|notice| say(console, notice))?;
     live.end(&out, &flown, console)

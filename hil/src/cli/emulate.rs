@@ -52,19 +52,21 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
+    let live = &arguments.live;
+    let pose = arguments
+        .pose
+        .unwrap_or_else(|| PoseSource::beside(live.link()));
+    live.beside(pose.port())?;
     let image = Image::get(arguments.firmware.clone(), console)?;
     let name = format!("live-emulator-{}", arguments.seed);
     let out = prepare(arguments.out.as_ref(), &name)?;
     let stop = Stop::on_signals()?;
-    let live = &arguments.live;
     let setup = EmulateSetup {
         common: live.common(&stop),
         elf: &image.bytes,
         world: arguments.world.clone(),
         seed: arguments.seed,
-        pose: arguments
-            .pose
-            .unwrap_or_else(|| PoseSource::beside(live.link())),
+        pose,
     };
     let flown = emulate(&setup, &|notice| say(console, notice))?;
     live.end(&out, &flown, console)

@@ -9,7 +9,7 @@ use super::Failure;
 use super::console::Console;
 use crate::flight::Flown;
 use crate::folder;
-use crate::live::{Common, Endpoint, Notice, Stop};
+use crate::live::{Common, Endpoint, Notice, Stop, TcpPort};
 use crate::summary::{DirectionFigures, Summary};
 
 /// Fastest that anybody may ask for: beyond it no machine keeps up.
@@ -39,6 +39,16 @@ impl LiveArguments {
     /// Where the other half is met.
     pub fn link(&self) -> &Endpoint {
         &self.link
+    }
+
+    /// The link and this port for poses, where there is one, must be two.
+    pub fn beside(&self, pose: Option<TcpPort>) -> Result<(), Failure> {
+        match &self.link {
+            Endpoint::Tcp(port) if pose == Some(*port) => {
+                Err(format!("{port} cannot be both --link and --pose").into())
+            }
+            _ => Ok(()),
+        }
     }
 
     /// For the flight.

@@ -10,11 +10,11 @@ use crate::board::BoardFigures;
 use crate::flight::aircraft::Aircraft;
 use crate::flight::wire::Wire;
 use crate::flight::{self, Flown, sum_up};
-use crate::record::Side;
+use crate::record::{Side, What};
 use crate::scenario::Scenario;
 use crate::summary::{LiveFigures, Summary};
 
-use super::endpoint::TcpPort;
+use super::endpoint::{Endpoint, TcpPort};
 use super::frames::Frames;
 use super::pace::Pacer;
 use super::port::Port;
@@ -97,6 +97,10 @@ impl Session<'_> {
     /// The drone stands on the ground until there is a camera.
     fn wait_for_a_peer(&mut self, common: &Common) {
         let mut told = false;
+        if matches!(common.link, Endpoint::Tty(_)) {
+            let text = "at once: a tty does not tell whether a board is there".to_owned();
+            self.scribe.tell(0, "Flying", text);
+        }
         loop {
             // What comes before the flight is not for this flight.
             self.meet(&mut Vec::new());
@@ -120,7 +124,11 @@ impl Session<'_> {
     fn step(&mut self) {
         let mut received = Vec::new();
         self.meet(&mut received);
-        self.wire.carry_to_autopilot(&mut received);
+        for message in self.wire.carry_to_autopilot(&mut received) {
+            let by = Side::Camera;
+            let recorder = &mut self.scribe.recorder;
+            recorder.deed(self.now_ms, What::Sent { by, message });
+        }
         let sent = self.aircraft.tick(self.now_ms, &received);
         self.hand_over(&sent);
         self.note();
@@ -132,7 +140,7 @@ impl Session<'_> {
 
     fn meet(&mut self, received: &mut Vec<u8>) {
         for news in self.link.poll(received) {
-            self.scribe.news(self.now_ms, "Link", news);
+            self.scribe.link_news(self.now_ms, Side::Camera, news);
         }
         if let Some(pose) = &mut self.pose {
             // Whoever renders has nothing to say.
@@ -144,7 +152,11 @@ impl Session<'_> {
 
     fn hand_over(&mut self, bytes: &[u8]) {
         for mut piece in self.spoken.push(bytes) {
-            self.wire.carry_to_camera(&mut piece.bytes);
+            for message in self.wire.carry_to_camera(&mut piece.bytes) {
+                let by = Side::Autopilot;
+                let recorder = &mut self.scribe.recorder;
+                recorder.deed(self.now_ms, What::Sent { by, message });
+            }
             if let Err(why) = self.link.send(&piece.bytes) {
                 self.scribe
                     .unsent(self.now_ms, Side::Camera, piece.name(), why);
@@ -189,7 +201,7 @@ impl Session<'_> {
         let recording = self.scribe.recorder.finish();
         let end = sum_up::End {
             completed: self.aircraft.phase() == Phase::Landed(Outcome::Completed),
-            outcome: outcome(self.aircraft.phase(), &setup.scenario),
+            outcome: outcome(&self.aircraft, &setup.scenario),
             flight_s: Duration::from_millis(self.now_ms).as_secs_f64(),
             figures: BoardFigures::default(),
             backend: BOARD,
@@ -216,8 +228,9 @@ fn in_words(phase: Phase) -> &'static str {
     }
 }
 
-fn outcome(phase: Phase, scenario: &Scenario) -> &'static str {
-    match phase {
+fn outcome(aircraft: &Aircraft, scenario: &Scenario) -> &'static str {
+    match aircraft.phase() {
+        Phase::Landed(_) if aircraft.stopped_safely() => sum_up::SAFE_STOP,
         Phase::Landed(outcome) => sum_up::in_words(outcome, scenario.homing),
         Phase::Ground => "ended before the drone took off",
         _ => "ended in mid-flight",

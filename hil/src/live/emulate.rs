@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use fake_sensors::camera::tcm8230::Tcm8230;
 use fake_sensors::world::World;
-use link::{Message, Parser};
+use link::Message;
 
 use crate::board::emulated::{Emulated, Firmware};
 use crate::board::{Board, BoardError, FirmwareLog};
@@ -21,7 +21,7 @@ use super::pace::Pacer;
 use super::port::Port;
 use super::pose::{Eyes, Seen};
 use super::scribe::{Notice, Scribe};
-use super::watch::{Turn, Watch};
+use super::watch::{self, Turn, Watch};
 use super::{Common, LiveError};
 
 /// The route's name in the summary: the autopilot has it.
@@ -64,7 +64,6 @@ pub fn emulate(setup: &EmulateSetup, say: &dyn Fn(Notice)) -> Result<Flown, Live
         eyes: Eyes::open(setup.pose)?,
         scribe: Scribe::new(blank.clone(), say),
         watch: Watch::default(),
-        heard: Parser::new(),
         spoken: Frames::default(),
         wire: Wire::new(0.0, setup.seed),
         stood_on_belief: false,
@@ -99,11 +98,9 @@ struct Session<'s, 'f> {
     eyes: Eyes,
     scribe: Scribe<'s>,
     watch: Watch,
-    /// Reads along what the firmware receives.
-    heard: Parser,
     /// What the firmware sends.
     spoken: Frames,
-    /// Counts; what breaks on the way breaks at the other end.
+    /// Reads along; what breaks on the way breaks at the other end.
     wire: Wire,
     /// Whether the camera ever was where the drone believed to be.
     stood_on_belief: bool,
@@ -123,13 +120,14 @@ impl Session<'_, '_> {
     fn step(&mut self) -> Result<(), BoardError> {
         let mut received = Vec::new();
         for news in self.link.poll(&mut received) {
-            self.scribe.news(self.now_ms, "Link", news);
+            self.scribe.link_news(self.now_ms, Side::Autopilot, news);
         }
         for seen in self.eyes.poll(self.now_ms) {
             self.saw(seen);
         }
-        self.wire.carry_to_camera(&mut received);
-        self.hear(&received);
+        for message in self.wire.carry_to_camera(&mut received) {
+            self.hear(&message);
+        }
         self.board.look_from(self.eyes.camera(self.now_ms));
         self.board.transmit(&received);
         self.board.advance()?;
@@ -152,20 +150,19 @@ impl Session<'_, '_> {
     }
 
     /// Understands what the autopilot says; what is broken, the firmware will name.
-    fn hear(&mut self, mut bytes: &[u8]) {
-        while let Some(frame) = self.heard.next_frame(&mut bytes) {
-            match &frame.message {
-                Message::State(state) => {
-                    if let Ok(pose) = state.pose() {
-                        self.watch.on_state(pose);
-                        if let Some(seen) = self.eyes.state(self.now_ms, pose) {
-                            self.saw(seen);
-                        }
-                    }
+    fn hear(&mut self, message: &Message) {
+        match message {
+            Message::State(state) => {
+                let Ok(pose) = state.pose() else {
+                    return;
+                };
+                self.watch.on_state(pose);
+                if let Some(seen) = self.eyes.state(self.now_ms, pose) {
+                    self.saw(seen);
                 }
-                Message::Command(command) => self.watch.on_command(command),
-                _ => {}
             }
+            Message::Command(command) => self.watch.on_command(command),
+            _ => {}
         }
     }
 
@@ -189,8 +186,8 @@ impl Session<'_, '_> {
         match self.watch.on_answer(message) {
             Some(Turn::NewRoute) => self.begin_anew(),
             Some(Turn::Mode(mode)) => {
-                let text = format!("the firmware is in mode 0x{mode:02x}");
-                self.scribe.recorder.note(self.now_ms, "info", text);
+                let text = format!("{} (0x{mode:02x})", watch::mode_name(mode));
+                self.scribe.tell(self.now_ms, "Mode", text);
             }
             None => {}
         }

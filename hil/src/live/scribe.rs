@@ -1,5 +1,7 @@
 //! Tells people what happens while it happens, and writes it down.
 
+use link::Parser;
+
 use crate::record::{Recording, Side};
 use crate::recorder::Recorder;
 use crate::summary::PaceFigures;
@@ -59,12 +61,22 @@ impl<'s> Scribe<'s> {
     pub fn news(&mut self, now_ms: u64, verb: &'static str, news: News) {
         match news {
             News::Came(peer) => self.tell(now_ms, verb, format!("connected: {peer}")),
-            News::Gone(peer) => self.warn(
-                now_ms,
-                format!("{}: peer lost: {peer}", verb.to_lowercase()),
-            ),
+            News::Gone { peer, .. } => {
+                let text = format!("{}: peer lost: {peer}", verb.to_lowercase());
+                self.warn(now_ms, text);
+            }
             News::Note(text) => self.tell(now_ms, verb, text),
         }
+    }
+
+    /// What happened at the link, whose far end is `to`.
+    pub fn link_news(&mut self, now_ms: u64, to: Side, news: News) {
+        if let News::Gone { unread, .. } = &news {
+            for frame in Parser::new().frames(unread) {
+                self.unsent(now_ms, to, frame.message.name(), Unsent::NoPeer);
+            }
+        }
+        self.news(now_ms, "Link", news);
     }
 
     /// A line that is no pose.

@@ -118,6 +118,17 @@ impl Watch {
     }
 }
 
+/// What a camera in this mode does, for people.
+pub fn mode_name(mode: u8) -> &'static str {
+    match mode {
+        _ if mode == Mode::Idle.byte() => "idle",
+        _ if mode == Mode::Clear.byte() => "forgot its route",
+        _ if records(mode) => "records",
+        _ if follows(mode) => "follows",
+        _ => "unknown",
+    }
+}
+
 fn follows(mode: u8) -> bool {
     mode & FOLLOWING != 0
 }

@@ -51,7 +51,12 @@ pub enum News {
     /// A peer is there.
     Came(String),
     /// It has gone.
-    Gone(String),
+    Gone {
+        /// Who, and how.
+        peer: String,
+        /// What waited for it: [`Port::send`] had taken it.
+        unread: Vec<u8>,
+    },
     /// Something else that people should know.
     Note(String),
 }
@@ -166,9 +171,11 @@ impl Port {
         if let Err(why) = self.read(received)
             && let Some(peer) = self.peer.take()
         {
-            self.unsent.clear();
             self.meeting.lost();
-            news.push(News::Gone(format!("{}: {why}", peer.name)));
+            news.push(News::Gone {
+                peer: format!("{}: {why}", peer.name),
+                unread: std::mem::take(&mut self.unsent),
+            });
         }
         news
     }
