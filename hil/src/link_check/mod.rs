@@ -14,7 +14,7 @@
 mod notation;
 mod record;
 
-pub use notation::{Fields, NotAMessage};
+pub use notation::{Fields, NotAMessage, describe};
 pub use record::{Delivered, Hex, NotHex, Record, Sent};
 
 use std::collections::BTreeMap;
