@@ -124,17 +124,14 @@ impl Picture {
     /// black there, or not all numbers.
     pub fn scaled_to(&self, mean: f32) -> Option<Vec<f32>> {
         let rows = self.texels.len() / self.width.max(1);
+        let white = self.white();
         let (mut sum, mut area) = (0.0_f64, 0.0_f64);
         for (row, line) in self.texels.chunks_exact(self.width.max(1)).enumerate() {
             let elevation = (0.5 - (row as f32 + 0.5) / rows as f32) * PI;
             if elevation.abs() < 0.25 * PI {
                 let weight = f64::from(libm::cosf(elevation));
                 // A lamp counts for what a camera makes of it: a white surface.
-                sum += weight
-                    * line
-                        .iter()
-                        .map(|x| f64::from(x.min(self.white())))
-                        .sum::<f64>();
+                sum += weight * line.iter().map(|x| f64::from(x.min(white))).sum::<f64>();
                 area += weight * line.len() as f64;
             }
         }

@@ -21,7 +21,7 @@ const PLAN_REACH_M: f32 = 12.0;
 /// Nothing grows closer than this to a glade, in metres.
 const GLADE_MARGIN_M: f32 = 0.4;
 /// How far the outline of foliage strays, as a share of its size.
-const RAGGED: f32 = 0.35;
+const RAGGED: f32 = 0.28;
 /// Share of trees that are conifers, unless the file says otherwise.
 const CONIFERS: f32 = 0.5;
 /// Reflectance of the `leaves` material, on which brightness is relative.

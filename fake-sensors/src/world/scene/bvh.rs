@@ -21,7 +21,7 @@ const WAITING: usize = 64;
 /// Up to this many solids are split where it is best, more in the middle.
 const SWEPT: usize = 4_096;
 /// From this many times a box's half diagonal on, half a pixel's width sees its haze.
-const BLURRED: f32 = 0.22;
+const BLURRED: f32 = 0.12;
 /// Boxes with more solids than this have no haze: they are never that far away.
 const HAZY: usize = 512;
 
@@ -133,19 +133,17 @@ impl Bvh {
                 Child::Node(node) => {
                     let first_new = count;
                     self.nodes[node as usize].visit(ray, covers, |child, enter_m| {
-                        if count < WAITING {
-                            // The last to wait is the next to be visited: the nearest.
-                            let waiting = &mut waiting[first_new..=count];
-                            let nearer = waiting[..count - first_new]
-                                .iter()
-                                .rev()
-                                .take_while(|(_, other_m)| *other_m < enter_m)
-                                .count();
-                            let place = count - first_new - nearer;
-                            waiting[place..].rotate_right(1);
-                            waiting[place] = (child, enter_m);
-                            count += 1;
+                        if count >= WAITING {
+                            return;
                         }
+                        // The last to wait is the next to be visited: the nearest.
+                        let mut place = count;
+                        while place > first_new && waiting[place - 1].1 < enter_m {
+                            waiting[place] = waiting[place - 1];
+                            place -= 1;
+                        }
+                        waiting[place] = (child, enter_m);
+                        count += 1;
                     });
                 }
                 Child::Nothing => {}
@@ -171,10 +169,10 @@ impl Node {
     /// of those that are too far away.
     #[inline]
     fn visit<'a>(&'a self, ray: &Ray, covers: &mut Covers<'a>, mut wait: impl FnMut(Child, f32)) {
-        let (enters_m, leaves_m, widths_m) = self.enters_m(ray);
+        let (enters_m, leaves_m, widths_m) = self.enters_m(ray, covers.limit_m());
         for lane in 0..4 {
             let enter_m = enters_m[lane];
-            if enter_m > leaves_m[lane] || enter_m >= covers.limit_m() {
+            if enter_m > leaves_m[lane] {
                 continue;
             }
             match &self.haze[lane] {
@@ -186,35 +184,37 @@ impl Node {
         }
     }
 
-    /// Where the widening ray enters each child's box, where it leaves it (earlier, if it misses it),
-    /// and half the pixel's width there.
+    /// Where the widening ray enters each child's box, where it leaves it (earlier, if it misses it or
+    /// the box lies beyond `limit_m`), and half the pixel's width there.
     #[inline]
-    fn enters_m(&self, ray: &Ray) -> ([f32; 4], [f32; 4], [f32; 4]) {
+    fn enters_m(&self, ray: &Ray, limit_m: f32) -> ([f32; 4], [f32; 4], [f32; 4]) {
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z];
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z];
-        let width = ray.half_across.max(ray.half_up);
+        // No solid looks further aside than this, be it level or upward.
+        let level = ray.half_across.max(ray.half_mean);
+        let widths = [level, level, ray.half_up.max(ray.half_mean)];
         let mut to_middle = [[0.0; 4]; 3];
-        let mut grown = [0.0; 4];
+        let mut reach = [0.0; 4];
         for axis in 0..3 {
             for lane in 0..4 {
                 to_middle[axis][lane] = self.middle[axis][lane] - origin[axis];
-                grown[lane] += to_middle[axis][lane] * direction[axis];
+                reach[lane] += to_middle[axis][lane] * direction[axis];
             }
         }
         for lane in 0..4 {
-            grown[lane] = width * larger(grown[lane] + self.radius[lane], 0.0);
+            reach[lane] = larger(reach[lane] + self.radius[lane], 0.0);
         }
-        let (mut enter, mut leave) = ([0.0; 4], [f32::INFINITY; 4]);
+        let (mut enter, mut leave) = ([0.0; 4], [limit_m; 4]);
         for axis in 0..3 {
             let (slowness, pace) = (ray.inverse[axis], ray.inverse[axis].abs());
             for lane in 0..4 {
                 let middle = to_middle[axis][lane] * slowness;
-                let half = (self.half[axis][lane] + grown[lane]) * pace;
+                let half = (self.half[axis][lane] + widths[axis] * reach[lane]) * pace;
                 enter[lane] = larger(enter[lane], middle - half);
                 leave[lane] = smaller(leave[lane], middle + half);
             }
         }
-        (enter, leave, grown)
+        (enter, leave, reach.map(|reach| ray.half_mean * reach))
     }
 }
 

@@ -7,7 +7,7 @@ use super::solid::Solid;
 /// next to nothing.
 const KEPT: usize = 20;
 /// A pixel that shows less than this of what lies behind shows nothing of it.
-const OPAQUE: f32 = 1.0 / 16.0;
+const OPAQUE: f32 = 1.0 / 10.0;
 
 /// What covers a part of a pixel.
 #[derive(Clone, Copy, Debug)]
