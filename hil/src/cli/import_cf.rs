@@ -15,8 +15,9 @@ use crate::import_cf::{LogFile, import};
 #[command(after_help = "Examples:\n  \
     hil import-cf logdata/20230531T10-11-12/*.csv\n  \
     hil import-cf state.csv vectors.csv --out flights/corridor --json\n\n\
-    In cfclient: Log Blocks, one or more configurations with stateEstimate.x, .y, .z, .yaw and the group vh,\n\
-    \"Write to file\". Everything is drawn from the drone's own estimate: there is no truth in these logs.\n\
+    In cfclient's tab Log Blocks: configurations with stateEstimate.x, .y, .z, .yaw and the group\n\
+    vh, each with \"Write to file\". Everything is drawn from the drone's own estimate: there is no\n\
+    truth in these logs.\n\
     Exit code 0: imported. 2: a file cannot be read; the error names file, line and column.")]
 pub struct Arguments {
     /// Log files of one flight, one for each log configuration

@@ -66,7 +66,8 @@ fn length(path: &[PlanarPose]) -> f64 {
             steps.push(*pose);
         }
     }
-    metrics::length(&steps)
+    // The sum of nothing is minus zero.
+    metrics::length(&steps) + 0.0
 }
 
 fn outcome(led: bool, home_error_m: f64) -> String {
@@ -92,5 +93,28 @@ fn homing(recording: &Recording) -> &'static str {
         (true, false) => "sequence",
         (false, true) => "odometry",
         _ => "both",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64) -> PlanarPose {
+        PlanarPose { x, y, yaw: 0.0 }
+    }
+
+    #[test]
+    fn trembling_adds_nothing_to_a_length() {
+        let tremble = |step: i32| 0.004 * f64::from(step % 2);
+        let path: Vec<PlanarPose> = (0..=200)
+            .map(|step| at(0.01 * f64::from(step), tremble(step)))
+            .collect();
+        assert!((length(&path) - 2.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn the_length_of_nothing_is_zero_without_a_sign() {
+        assert!(length(&[]).is_sign_positive());
     }
 }

@@ -96,7 +96,7 @@ fn folded(drops: &[LinkDrop]) -> Markup {
     let left_out = kinds.len().saturating_sub(MOST_KINDS);
     html! {
         p.note {
-            (number::grouped(drops.len() as u64)) " drops, folded by side, message and reason; each with its time is in recording.json, link_drops."
+            (number::grouped(drops.len() as u64)) " drops, folded by side, message and reason; each with its time is in the log below and in recording.json, link_drops."
             @if left_out > 0 { " " (number::grouped(left_out as u64)) " rare kinds are left out here." }
         }
         div.scroll { table.drops {

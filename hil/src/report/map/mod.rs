@@ -88,10 +88,14 @@ fn key_figures(recording: &Recording, summary: &Summary, left: f64, top: f64) ->
         Reference::Truth => ("from home at the end", summary.odometry_only_error_m),
         Reference::Estimate => ("from the start, as it believed", f64::NAN),
     };
+    let cross_track_m = match summary.inbound_m > 0.0 {
+        true => summary.cross_track_rms_m,
+        false => f64::NAN,
+    };
     let figures = [
         (summary.home_error_m, 2, "m", home),
         (alone, 2, "m", "by odometry alone"),
-        (summary.cross_track_rms_m, 2, "m", "RMS off the way out"),
+        (cross_track_m, 2, "m", "RMS off the way out"),
         (summary.bytes_per_m, 1, "B/m", "of route memory"),
     ];
     let known = figures.into_iter().filter(|(value, ..)| value.is_finite());
