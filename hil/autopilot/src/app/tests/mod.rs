@@ -1,5 +1,6 @@
 //! The app on a bench: a camera of a few lines, and a drone that is where it should be.
 
+mod accounts;
 mod exchange;
 mod flights;
 mod operator;
