@@ -197,6 +197,10 @@ pub struct Deed {
 
 /// What an end of the link said or did. Coordinates are the autopilot's own.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nearly all deeds are messages: boxes would cost more than they save"
+)]
 pub enum What {
     /// A message went onto the wire, before anything could happen to it.
     Sent {

@@ -182,7 +182,7 @@ fn gate(canvas: &mut Canvas, noise: &mut Normal, u: f32) {
     };
     let grey = between(noise, 0.1, 0.5);
     canvas.paint(leaf, |_, y, _| {
-        if (16.0 * y) as usize % 2 == 0 {
+        if ((16.0 * y) as usize).is_multiple_of(2) {
             grey
         } else {
             0.8 * grey
@@ -232,7 +232,7 @@ fn sheet_metal(canvas: &mut Canvas, noise: &mut Normal, u: f32) {
     };
     let (metal, paint) = (between(noise, 0.2, 0.35), between(noise, 0.06, 0.5));
     canvas.paint(area, |x, y, _| {
-        let shade = if (24.0 * x) as usize % 2 == 0 {
+        let shade = if ((24.0 * x) as usize).is_multiple_of(2) {
             1.0
         } else {
             0.85

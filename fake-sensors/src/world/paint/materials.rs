@@ -58,7 +58,11 @@ pub fn carpet(noise: &mut Normal, contrast: Option<f32>) -> Swatch {
     let field = periodic_noise(noise, 2, 0);
     Swatch::new(0.16, 2.0, &field, contrast.unwrap_or(0.1)).paint(|u, v, old| {
         let squares = (4.0 * u) as usize + (4.0 * v) as usize;
-        old * if squares % 2 == 0 { 1.06 } else { 0.94 }
+        old * if squares.is_multiple_of(2) {
+            1.06
+        } else {
+            0.94
+        }
     })
 }
 

@@ -72,7 +72,7 @@ pub fn windows(noise: &mut Normal, sheet: &Sheet, contrast: Option<f32>) -> Canv
             ..frame
         };
         canvas.paint(radiator, |x, _, _| {
-            if (14.0 * x) as usize % 2 == 0 {
+            if ((14.0 * x) as usize).is_multiple_of(2) {
                 0.5
             } else {
                 0.33
@@ -276,7 +276,7 @@ fn white_board(canvas: &mut Canvas, noise: &mut Normal, u: f32) {
             height: 0.05,
         };
         canvas.paint(text, |x, _, old| {
-            if (23.0 * x) as usize % 3 == 0 {
+            if ((23.0 * x) as usize).is_multiple_of(3) {
                 old
             } else {
                 0.25
@@ -323,12 +323,13 @@ fn view(canvas: &mut Canvas, noise: &mut Normal, frame: Area) {
     };
     let steps = between(noise, 2.0, 5.0);
     canvas.paint(frame, |x, y, _| {
-        let bar = x < 0.04 || x > 0.96 || y < 0.04 || y > 0.96 || (x - 0.5).abs() < 0.02;
+        let bar =
+            !(0.04..=0.96).contains(&x) || !(0.04..=0.96).contains(&y) || (x - 0.5).abs() < 0.02;
         let roof = skyline + 0.08 * ((steps * x) as usize % 2) as f32;
         if bar {
             0.5
         } else if y > blind {
-            if (40.0 * y) as usize % 2 == 0 {
+            if ((40.0 * y) as usize).is_multiple_of(2) {
                 0.55
             } else {
                 0.4

@@ -201,8 +201,8 @@ impl Node {
                 reach[lane] += to_middle[axis][lane] * direction[axis];
             }
         }
-        for lane in 0..4 {
-            reach[lane] = larger(reach[lane] + self.radius[lane], 0.0);
+        for (reach, radius) in reach.iter_mut().zip(&self.radius) {
+            *reach = larger(*reach + radius, 0.0);
         }
         let (mut enter, mut leave) = ([0.0; 4], [limit_m; 4]);
         for axis in 0..3 {
