@@ -31,6 +31,10 @@ impl Told {
             Self::Refused(_) => None,
         }
     }
+
+    fn is_good(&self) -> bool {
+        self.frame().is_some_and(|frame| *frame == GOOD)
+    }
 }
 
 /// Takes all events out of `bytes`.
@@ -93,7 +97,8 @@ impl<'a> Case<'a> {
         assert_counts(counters, &self.told);
     }
 
-    /// What is held when the wire falls silent is decided as if nothing followed; nothing is left.
+    /// What is held when the wire falls silent is decided as if nothing followed; nothing is left,
+    /// and the parser is ready for more.
     pub fn assert_that_giving_up_decides_all(mut self) {
         self.parser.give_up();
         drain(&mut self.parser, &[], &mut self.told);
@@ -106,14 +111,20 @@ impl<'a> Case<'a> {
             self.stream.len()
         );
         assert_counts(counters, &self.told);
+
+        // The sender goes on later.
+        let (beginning, end) = GOOD.split_at(17);
+        drain(&mut self.parser, beginning, &mut self.told);
+        drain(&mut self.parser, end, &mut self.told);
+        assert!(self.told.last().is_some_and(Told::is_good));
     }
 
     /// Behind any stream, good frames come out again after one maximal frame at the latest.
     pub fn assert_that_good_frames_are_found_again(mut self) {
         let copies = LONGEST_CLAIM / GOOD.len() + 2;
         drain(&mut self.parser, &GOOD.repeat(copies), &mut self.told);
-        let good = |told: &&Told| told.frame().is_some_and(|frame| *frame == GOOD);
-        let in_step = self.told.iter().rev().take_while(good).count();
+        let newest_first = self.told.iter().rev();
+        let in_step = newest_first.take_while(|told| told.is_good()).count();
         let lost = copies.saturating_sub(in_step);
         assert!(
             lost * GOOD.len() < LONGEST_CLAIM + GOOD.len(),
