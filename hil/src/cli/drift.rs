@@ -20,10 +20,11 @@ use crate::parallel;
     hil drift                             200 seeds, the reference's distances\n  \
     hil drift --seeds 1000 --distances 5 --json\n  \
     hil drift --out drift                 with a picture, drift/drift.svg\n\n\
-    The filter listens to the nominal sensors while the drone flies straight on at 0.5 m/s and 0.5 m, by the truth.\n\
-    Beside each row stands what the firmware's own filter made of that flight (cross over 200 seeds, the rest over 50).\n\
-    Exit code 0: every row is within 25 % of the firmware's (cross at 5 m: 13 +- 2 cm), or within three standard\n\
-    errors if the seeds are few; a distance the firmware was not measured at is not judged. 1: a row is not.")]
+    The filter listens to the nominal sensors while the drone flies straight on by the truth, at\n\
+    0.5 m/s and 0.5 m. Beside each row stands what the firmware's own filter made of that flight\n\
+    (cross over 200 seeds, the rest over 50).\n\
+    Exit code 0: every row is within 25 % of the firmware's, and cross at 5 m is 13 +- 2 cm; few seeds\n\
+    are held to three standard errors, other distances to nothing. 1: a row is not. 2: no flight.")]
 pub struct Arguments {
     /// How many seeds, from 1
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]

@@ -14,8 +14,9 @@ use crate::ekf_replay::{self, Report};
 #[command(after_help = "Examples:\n  \
     hil ekf-replay tests/golden/data/ekf/g1_hover\n  \
     hil ekf-replay recordings/north --initial-yaw 1.57 --json\n\n\
-    PREFIX.imu.csv holds a row for each millisecond, PREFIX.events.csv what else reached the filter,\n\
-    PREFIX.ekf.csv the recorded filter's state; tests/golden/data/ekf/FORMAT.md has their columns.\n\
+    PREFIX.imu.csv holds a row for each millisecond, PREFIX.events.csv what else reached the\n\
+    filter, PREFIX.ekf.csv the recorded filter's state; tests/golden/data/ekf/FORMAT.md has the\n\
+    columns.\n\
     Exit code 0: within the limits. 1: beyond one of them. 2: the recording cannot be read.")]
 pub struct Arguments {
     /// The recording: folder and name without .imu.csv

@@ -12,8 +12,9 @@ use crate::link_check;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  hil link-check tests/golden/data/pprzlink.jsonl --json\n\n\
-    A record holds if our parser delivers every good frame the recorded receiver delivered, and beyond those only\n\
-    whole frames that it lost; and if our sender makes the same bytes of what was sent.\n\
+    A record holds if our parser delivers every good frame the recorded receiver delivered, and\n\
+    beyond those only whole frames that it lost; and if our sender makes the same bytes of what\n\
+    was sent.\n\
     Exit code 0: every record holds. 1: some do not. 2: the file cannot be read."
 )]
 pub struct Arguments {
