@@ -20,6 +20,8 @@ pub enum Route {
     Line,
     /// Round one corner, 4 m: seconds, for tests
     Corner,
+    /// The leg of the corridor (Fig. 5C and D): 6 m out and back ten times: 120 m
+    Corridor,
 }
 
 impl Route {
@@ -30,6 +32,7 @@ impl Route {
             Self::S => "s",
             Self::Line => "line",
             Self::Corner => "corner",
+            Self::Corridor => "corridor",
         }
     }
 
@@ -41,6 +44,7 @@ impl Route {
             // South, like the first leg of the U: the arena's middle is there.
             Self::Line => along(&[(0.0, 0.0), (-5.0, 0.0)]),
             Self::Corner => along(&[(0.0, 0.0), (-3.0, 0.0), (-3.0, 1.0)]),
+            Self::Corridor => app::Route::corridor(),
         }
     }
 }

@@ -92,10 +92,12 @@ impl Route {
         Self::passes(&north_east(places), passes)
     }
 
-    /// `rounds` times south and back. (The published corridor experiment flies ten times 6 m, north.)
-    pub fn corridor(length_m: f32, rounds: usize) -> Self {
-        let places = [(0.0, 0.0), (-length_m, 0.0)];
-        Self::passes(&north_east(places), 2 * rounds)
+    /// The leg of the corridor experiment, 6 m, flown there and back ten times, 120 m in all. Southward,
+    /// like the first leg of the U, where the published script flies north: rooms that hold the U then
+    /// hold this as well.
+    pub fn corridor() -> Self {
+        const ROUNDS: usize = 10;
+        Self::passes(&north_east([(0.0, 0.0), (-6.0, 0.0)]), 2 * ROUNDS)
     }
 
     /// Straight north.
@@ -142,6 +144,14 @@ mod tests {
     #[test]
     fn the_s_is_40_m_long() {
         assert_eq!(Route::s().length_m(), 40.0);
+    }
+
+    #[test]
+    fn the_corridor_is_120_m_long_and_ends_where_it_began() {
+        let route = Route::corridor();
+        assert_eq!(route.length_m(), 120.0);
+        let end = route.waypoints.last().map(|waypoint| waypoint.place);
+        assert_eq!(end, route.start());
     }
 
     #[test]
