@@ -1,7 +1,7 @@
 //! Worlds: what a camera can look at.
 //!
 //! A world's frame is that of the route flown in it: x north, y west, z up, in metres; the origin
-//! is the route's start, on the floor. Worlds are described in TOML ([`description`]), built from a
+//! is the route's start, on the floor. Worlds are described in TOML (see `description`), built from a
 //! seed, and seen from a point at a time: things move, light changes.
 //!
 //! | room | what it does |
