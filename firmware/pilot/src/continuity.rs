@@ -311,3 +311,6 @@ fn is_at_the_origin(pose: &Pose) -> bool {
 fn turn(radians: f32) -> f32 {
     libm::remainderf(radians, core::f32::consts::TAU)
 }
+
+#[cfg(test)]
+mod tests;

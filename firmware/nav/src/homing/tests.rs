@@ -202,3 +202,21 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_place_resembles_itself_from_a_fifth_of_the_distance_and_no_other_place() {
+    for seed in SEEDS {
+        let place = Place::new(seed);
+        let snapshot = Snapshot::quantise(&place.view([0.0, 0.0], 0.0));
+        let seen = |view: &Spectrum| Resemblance::of(view, &snapshot, &HomingParameters::DEFAULT);
+        let same = seen(&place.view([0.0, 0.0], 0.0)).unwrap();
+        assert!(same.difference < 0.001);
+        // From 0.2 to the south and turned to the left: the place lies 0.2 to the north.
+        let near = seen(&place.view([-0.2, 0.0], 0.3).rotated(0.0)).unwrap();
+        assert!(near.difference < 0.1, "seed {seed}: {near:?}");
+        assert!((near.rotation + 0.3).abs() < 0.1, "seed {seed}: {near:?}");
+        let other = Place::new(seed + 100).view([0.0, 0.0], 0.0);
+        // Where the views contradict each other too much there is no vector at all.
+        assert!(seen(&other).is_err() || seen(&other).unwrap().difference > 0.2);
+    }
+}

@@ -366,6 +366,40 @@ fn following_that_was_interrupted_goes_on_where_it_was() {
     assert_eq!(bench.snapshots(), left);
 }
 
+#[test]
+fn a_gap_in_the_poses_begins_the_leg_anew_but_leaves_a_drone_at_home_alone() {
+    let mut bench = Bench::new();
+    bench.record(0x03, 4.5);
+    bench.command(0x12);
+    let fly = |bench: &mut Bench, x: &mut f32, steps: usize| {
+        for _ in 0..steps {
+            let vector = bench.step(*x, 0.0, Some(&view())).vector.unwrap();
+            *x += (vector.target.x - *x).clamp(-0.1, 0.1);
+        }
+    };
+    let mut x = 4.5;
+    let homing = |event: &Event| matches!(event, Event::HomingStarted { .. });
+    while bench.count(homing) == 0 {
+        fly(&mut bench, &mut x, 1);
+    }
+    // In the middle of homing: the seconds of the gap must not count as time at the snapshot.
+    bench.now_ms += 9_000;
+    bench.navigator.resume();
+    fly(&mut bench, &mut x, 3);
+    assert_eq!(bench.count(homing), 2);
+    assert_eq!(
+        bench.count(|event| matches!(event, Event::Arrived { .. })),
+        0
+    );
+    fly(&mut bench, &mut x, 400);
+    let finished = |event: &Event| *event == Event::RouteFinished;
+    assert_eq!(bench.count(finished), 1);
+    bench.navigator.resume();
+    let held = bench.step(x, 0.0, Some(&view())).vector.unwrap();
+    assert!(held.target.x.abs() < 0.1);
+    assert_eq!(bench.count(|event| *event == Event::RouteEmpty), 0);
+}
+
 fn is_sound(step: &Step) -> bool {
     let point = |p: Point2<f32>| p.x.is_finite() && p.y.is_finite();
     let pose = |p: Pose| point(p.position) && p.heading.is_finite();

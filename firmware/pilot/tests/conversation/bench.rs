@@ -1,5 +1,7 @@
 //! A pilot, its clock and the autopilot's ear.
 
+#![allow(dead_code, reason = "several tests share it, and none needs all of it")]
+
 use heapless::Vec as Args;
 use link::{Command, Message, Parser, State};
 use pilot::{Event, Frame, FrameReport, Outbox, PERIOD_BYTES, Parameters, Pilot};
@@ -52,6 +54,11 @@ impl Bench {
     pub fn command(&mut self, command: u8, args: &[u8]) -> Vec<Message> {
         let args = Args::from_slice(args).expect("few arguments");
         self.hear(&Message::Command(Command { command, args }))
+    }
+
+    /// Time in which nothing is heard.
+    pub fn wait(&mut self, ms: u32) {
+        self.now_ms = self.now_ms.wrapping_add(ms);
     }
 
     /// A STATE, a period after the last one: metres north and east, radians clockwise from north.
