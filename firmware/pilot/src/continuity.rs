@@ -160,12 +160,13 @@ impl Continuity {
             None => Verdict::Doubtful { news: true },
             Some(before) if agree(&before, &doubt) => {
                 self.doubt = None;
+                let away_ms = elapsed_ms.saturating_add(UNSEEN_MS);
                 if is_at_the_origin(&before.pose) {
                     match self.recognise(view, parameters) {
                         Some(here) => self.go_on_from(&here, pose),
                         None => self.lose(pose),
                     }
-                } else if self.is_within_reach(&known, &here, now_ms, elapsed_ms + UNSEEN_MS) {
+                } else if self.is_within_reach(&known, &here, now_ms, away_ms) {
                     Verdict::GoesOn(here)
                 } else {
                     self.lose(pose)

@@ -7,6 +7,8 @@
 //! frame   -> horizon -> exposure
 //!               |-----> spectrum ---.
 //! message -> command / pose --------+-> navigator -> outbox
+//!                        |               |
+//!                        '-> continuity -'  (which coordinates the autopilot counts in)
 //! ```
 #![no_std]
 

@@ -244,6 +244,20 @@ fn when_the_link_was_away_in_the_air_the_flight_goes_on() {
 }
 
 #[test]
+fn a_route_that_is_farther_away_than_any_vector_is_not_flown_to() {
+    let mut flight = Flight::out(1.0);
+    flight.bench.command(IDLE, &[]);
+    while flight.north < 25.0 {
+        flight.state();
+        flight.north += STEP_M;
+    }
+    flight.bench.command(FOLLOW, &[]);
+    flight.follow(20);
+    assert_eq!(flight.count(Event::Lost), 1);
+    assert!(flight.farthest < 0.1, "it stays");
+}
+
+#[test]
 fn without_a_route_any_take_off_will_do() {
     let mut bench = Bench::new();
     for origin in [0.0, 30.0, -200.0] {
