@@ -173,7 +173,7 @@ pub enum Side {
     Autopilot,
 }
 
-/// A frame of the link that its receiver dropped.
+/// A frame of the link that its receiver dropped, or that never got there because nobody was there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LinkDrop {
     /// Flight time, seconds.

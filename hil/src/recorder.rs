@@ -100,11 +100,27 @@ impl Recorder {
 
     /// A frame of the link was dropped by its receiver.
     pub fn link_drop(&mut self, now_ms: u64, side: Side, message: String, why: String) {
-        let t = seconds(now_ms);
         let source = match side {
             Side::Camera => "firmware",
             Side::Autopilot => "app",
         };
+        self.drop_frame(now_ms, source, side, message, why);
+    }
+
+    /// A frame of the link never got to this side.
+    pub fn link_loss(&mut self, now_ms: u64, side: Side, message: String, why: String) {
+        self.drop_frame(now_ms, "rig", side, message, why);
+    }
+
+    fn drop_frame(
+        &mut self,
+        now_ms: u64,
+        source: &'static str,
+        side: Side,
+        message: String,
+        why: String,
+    ) {
+        let t = seconds(now_ms);
         self.line(t, source, "warn", format!("link dropped {message}: {why}"));
         self.recording.link_drops.push(LinkDrop {
             t,

@@ -64,6 +64,9 @@ pub fn fly_aircraft(setup: &AutopilotSetup, say: &dyn Fn(Notice)) -> Result<Flow
     let mut pacer = Pacer::new(setup.common.speed);
     while !session.landed() && !setup.common.over(session.now_ms) {
         pacer.wait();
+        if let Some(late) = pacer.falls_behind() {
+            session.scribe.behind(session.now_ms, late);
+        }
         session.step();
     }
     Ok(session.finish(setup, &pacer))

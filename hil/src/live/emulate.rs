@@ -74,6 +74,9 @@ pub fn emulate(setup: &EmulateSetup, say: &dyn Fn(Notice)) -> Result<Flown, Live
     let mut pacer = Pacer::new(setup.common.speed);
     while !setup.common.over(session.now_ms) {
         pacer.wait();
+        if let Some(late) = pacer.falls_behind() {
+            session.scribe.behind(session.now_ms, late);
+        }
         session.step()?;
     }
     session.finish(scenario, &firmware, setup, &pacer)

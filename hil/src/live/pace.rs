@@ -8,6 +8,8 @@ use crate::summary::PaceFigures;
 /// A step begun later than this is late: half of the 10 ms in which a Crazyflie's app listens after
 /// each STATE.
 pub const LATE: Duration = Duration::from_millis(5);
+/// Further behind the clock than this is worth a word while it happens.
+const BEHIND: Duration = Duration::from_secs(1);
 /// One step.
 const STEP_S: f64 = 0.001;
 
@@ -19,6 +21,8 @@ pub struct Pacer {
     steps: u64,
     late: u64,
     largest: Duration,
+    /// How far behind it was when that was told last.
+    told: Duration,
 }
 
 impl Pacer {
@@ -30,6 +34,7 @@ impl Pacer {
             steps: 0,
             late: 0,
             largest: Duration::ZERO,
+            told: Duration::ZERO,
         }
     }
 
@@ -47,6 +52,16 @@ impl Pacer {
         self.late += u64::from(late > LATE);
     }
 
+    /// How far behind the clock the flight is, where that is news: a second, and then twice as far as
+    /// when it was told last.
+    pub fn falls_behind(&mut self) -> Option<Duration> {
+        let is_news = self.largest >= BEHIND.max(2 * self.told);
+        is_news.then(|| {
+            self.told = self.largest;
+            self.told
+        })
+    }
+
     /// Since the start.
     pub fn elapsed(&self) -> Duration {
         self.started.elapsed()
@@ -59,5 +74,21 @@ impl Pacer {
             largest_lateness_ms: self.largest.as_secs_f64() * 1_000.0,
             late_share: self.late as f64 / self.steps.max(1) as f64,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn falling_behind_is_told_at_a_second_and_whenever_it_has_doubled() {
+        let mut pacer = Pacer::new(1.0);
+        let mut told = Vec::new();
+        for late_ms in (0..10_000).step_by(100) {
+            pacer.largest = Duration::from_millis(late_ms);
+            told.extend(pacer.falls_behind().map(|late| late.as_millis()));
+        }
+        assert_eq!(told, [1_000, 2_000, 4_000, 8_000]);
     }
 }

@@ -1,5 +1,7 @@
 //! Tells people what happens while it happens, and writes it down.
 
+use std::time::Duration;
+
 use link::Parser;
 
 use crate::record::{Recording, Side};
@@ -92,16 +94,21 @@ impl<'s> Scribe<'s> {
 
     /// A frame could not be handed over; `to` is who did not get it.
     pub fn unsent(&mut self, now_ms: u64, to: Side, message: &str, why: Unsent) {
-        self.recorder.link_drop(
-            now_ms,
-            to,
-            message.to_owned(),
-            format!("not handed over: {why}"),
-        );
+        let why = format!("not handed over: {why}");
+        self.recorder.link_loss(now_ms, to, message.to_owned(), why);
     }
 }
 
 impl Scribe<'_> {
+    /// The flight has fallen behind the clock.
+    pub fn behind(&mut self, now_ms: u64, late: Duration) {
+        let text = format!(
+            "{:.1} s behind the clock: this machine is too slow, or has too much else to do",
+            late.as_secs_f64()
+        );
+        self.warn(now_ms, text);
+    }
+
     /// How well the flight kept step with the clock.
     pub fn report_pace(&mut self, now_ms: u64, pace: &PaceFigures) {
         let text = format!(
