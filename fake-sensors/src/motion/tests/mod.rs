@@ -1,5 +1,7 @@
 //! Claims about the sensors from their definition.
 
+mod errors;
+
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{
