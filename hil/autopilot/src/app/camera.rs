@@ -4,10 +4,9 @@ use link::{Implausible, Message, Mode, State, Vector, WorldPoint, WorldPose};
 use nalgebra::Vector3;
 
 use super::correction::Corrections;
-use super::dropped::Dropped;
 use super::goal::Goal;
 use super::handshake::Handshake;
-use super::receive_loop::{Delivery, ReceiveLoop};
+use super::reception::{Delivery, Dropped, ReceiveLoop};
 use super::settings::Settings;
 use super::value_check::ValueCheck;
 use crate::ekf::Measurement;

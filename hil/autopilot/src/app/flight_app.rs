@@ -4,9 +4,9 @@ use link::{Mode, WorldPoint, WorldPose};
 use nalgebra::Vector3;
 
 use super::camera::{Camera, Counters, News, Received};
-use super::dropped::Dropped;
 use super::mission::{Decision, Mission, View};
 use super::phase::{Outcome, Phase};
+use super::reception::Dropped;
 use super::safety;
 use super::script::Script;
 use super::settings::{CYCLE_MS, FLIGHT_HEIGHT_M, Settings};

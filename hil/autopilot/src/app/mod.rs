@@ -9,36 +9,35 @@
 //! estimate -> safety -> script -> set-point
 //!                |         ^
 //!              STATE       | VECTOR of an earlier cycle
-//! bytes -> UART buffer -> parser -> INS_CORRECTION -> measurements for the filter
+//! bytes -> reception -> handlers -> INS_CORRECTION -> measurements for the filter
 //! ```
 //!
 //! Sans-IO: one call of [`FlightApp::tick`] a millisecond takes the time, the estimate and the bytes
 //! received, and returns what to send, where to fly and what to tell the filter.
 //!
-//! Source: tomvand/2020-visualhoming-crazyflie, branch `visualhoming` (June 2023). Left out: the
-//! radio's and the battery's checks, and the zeroing of the position on the ground, which the
-//! filter's reset at take-off makes void.
+//! Source: tomvand/2020-visualhoming-crazyflie, branch `visualhoming` (June 2023); what its branch
+//! `master` (August 2022) did differently is in [`Settings::MASTER_2022_08`]. What the real client
+//! does wrong on the link is in [`Quirks`], each with a switch.
+//!
+//! Our own are the limits that stand for an operator's patience, and [`Settings::default`]'s
+//! set-points that travel. One app is one flight: after landing, or after a restart of the
+//! autopilot, a new one takes off.
 
 mod camera;
 mod correction;
-mod dropped;
 mod experiment;
 mod flight_app;
 mod goal;
 mod handshake;
-mod ledger;
 mod mission;
 mod phase;
-pub mod published_receiver;
 mod quirks;
-mod receive_loop;
-mod receiver;
+mod reception;
 mod route;
 mod safety;
 mod script;
 mod settings;
 mod signals;
-mod uart;
 mod value_check;
 mod vertical;
 
@@ -46,11 +45,11 @@ mod vertical;
 mod tests;
 
 pub use camera::{Counters, Received};
-pub use dropped::{DropReason, Dropped};
 pub use experiment::Experiment;
 pub use flight_app::{FlightApp, Output};
 pub use phase::{Outcome, Phase};
 pub use quirks::Quirks;
+pub use reception::{DropReason, Dropped, published_receiver};
 pub use route::{Arrival, Route, Waypoint};
 pub use script::{Script, Step, Until};
 pub use settings::{CYCLE_MS, CorrectionSd, FLIGHT_HEIGHT_M, Settings};

@@ -345,9 +345,10 @@ fn a_script_that_was_never_led_has_nothing_to_realign_by() {
 fn an_app_that_starts_in_mid_flight_time_takes_off_and_follows_home() {
     let mut bench = Bench::new(Script::resume(), Settings::default());
     bench.now_ms = 123_456;
-    bench.app.set_signals(DISABLED);
-    bench.run(130_000);
-    bench.app.set_signals(ALL_WELL);
+    bench.run(124_455);
+    assert_eq!(bench.app.phase(), Phase::Ground, "a second of calibration");
+    bench.run(124_456);
+    assert_eq!(bench.app.phase(), Phase::TakeOff);
     let mut answers = 0;
     let outcome = bench.fly(200_000, |message| match message {
         Message::Command(_) => vec![message.clone()],

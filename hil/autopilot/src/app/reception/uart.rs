@@ -6,8 +6,8 @@ use link::{Counters, Message};
 
 use super::dropped::{DropReason, Dropped};
 use super::ledger::Ledger;
-use super::quirks::Quirks;
 use super::receiver::{Found, NumberedByte, Receiver, Span};
+use crate::app::quirks::Quirks;
 
 /// Bytes that UART2's stream buffer holds.
 const BUFFER_BYTES: usize = 200;

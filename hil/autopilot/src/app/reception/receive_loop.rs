@@ -11,8 +11,8 @@
 use link::{Command, Message};
 
 use super::dropped::{DropReason, Dropped};
-use super::quirks::Quirks;
 use super::uart::{Heard, Uart};
+use crate::app::quirks::Quirks;
 
 /// Receive calls in each cycle.
 const CALLS: u32 = 10;
@@ -181,8 +181,8 @@ mod tests {
     use link::{Command, Message, State};
 
     use super::{Delivery, ReceiveLoop};
-    use crate::app::dropped::DropReason;
     use crate::app::quirks::Quirks;
+    use crate::app::reception::dropped::DropReason;
 
     fn command(byte: u8) -> Message {
         Message::Command(Command {
