@@ -188,7 +188,17 @@ impl Session<'_> {
         }
     }
 
+    /// What has come and will not be read any more.
+    fn name_the_rest(&mut self) {
+        let mut rest = Vec::new();
+        self.meet(&mut rest);
+        for message in self.wire.carry_to_autopilot(&mut rest) {
+            self.scribe.too_late(self.now_ms, Side::Autopilot, &message);
+        }
+    }
+
     fn finish(mut self, setup: &AutopilotSetup, pacer: &Pacer) -> Flown {
+        self.name_the_rest();
         let live = LiveFigures {
             pace: pacer.figures(),
             link: setup.common.link.to_string(),

@@ -200,8 +200,10 @@ impl Session<'_, '_> {
 
     /// The route of before is forgotten, as the firmware has.
     fn begin_anew(&mut self) {
-        let recorder =
-            std::mem::replace(&mut self.scribe.recorder, Recorder::new(self.blank.clone()));
+        let recorder = std::mem::replace(
+            &mut self.scribe.recorder,
+            Recorder::new(Recording::default()),
+        );
         let before = recorder.finish();
         let text = format!(
             "a new route; the one before had {} snapshots and {} corrections",
@@ -247,6 +249,17 @@ impl Session<'_, '_> {
         }
     }
 
+    /// What has come and will not be received any more.
+    fn name_the_rest(&mut self) {
+        let mut rest = Vec::new();
+        for news in self.link.poll(&mut rest) {
+            self.scribe.link_news(self.now_ms, Side::Autopilot, news);
+        }
+        for message in self.wire.carry_to_camera(&mut rest) {
+            self.scribe.too_late(self.now_ms, Side::Camera, &message);
+        }
+    }
+
     fn finish(
         mut self,
         scenario: Scenario,
@@ -254,6 +267,7 @@ impl Session<'_, '_> {
         setup: &EmulateSetup,
         pacer: &Pacer,
     ) -> Result<Flown, LiveError> {
+        self.name_the_rest();
         let figures = self.board.finish()?;
         self.log();
         let scenario = Scenario {

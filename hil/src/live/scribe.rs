@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use link::Parser;
+use link::{Message, Parser};
 
 use crate::record::{Recording, Side};
 use crate::recorder::Recorder;
@@ -107,6 +107,12 @@ impl Scribe<'_> {
             late.as_secs_f64()
         );
         self.warn(now_ms, text);
+    }
+
+    /// A frame came to `to` when the flight had ended.
+    pub fn too_late(&mut self, now_ms: u64, to: Side, message: &Message) {
+        let (message, why) = (message.name().to_owned(), "came after the end".to_owned());
+        self.recorder.link_loss(now_ms, to, message, why);
     }
 
     /// How well the flight kept step with the clock.

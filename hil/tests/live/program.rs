@@ -79,17 +79,20 @@ impl Program {
 
     /// Waits until it has said that.
     pub fn wait_for(&mut self, text: &str) {
+        self.wait_for_times(text, 1);
+    }
+
+    /// Waits until it has said that so many times.
+    pub fn wait_for_times(&mut self, text: &str, times: usize) {
         wait_until(text, || {
             let ended = self.child.try_wait().expect("a child").is_some();
             if let Some(listener) = self.listener.take_if(|_| ended) {
                 listener.join().expect("all heard");
             }
             let said = self.said();
-            assert!(
-                said.contains(text) || !ended,
-                "ended before `{text}`: {said}"
-            );
-            said.contains(text)
+            let enough = said.matches(text).count() >= times;
+            assert!(enough || !ended, "ended before `{text}`: {said}");
+            enough
         });
     }
 
