@@ -20,8 +20,10 @@ use crate::world::scene::{Material, STEADY};
 const PLAN_REACH_M: f32 = 12.0;
 /// Nothing grows closer than this to a glade, in metres.
 const GLADE_MARGIN_M: f32 = 0.4;
-/// How far the outline of foliage strays, as a share of its size.
+/// How far the outline of a tree's or a bush's foliage strays, as a share of its size.
 const RAGGED: f32 = 0.28;
+/// The same of a plant, whose leaves are large beside it.
+const LEAFY: f32 = 0.6;
 /// Share of trees that are conifers, unless the file says otherwise.
 const CONIFERS: f32 = 0.5;
 /// Reflectance of the `leaves` material, on which brightness is relative.
@@ -231,18 +233,20 @@ fn plant_at(
     let (radius_m, height_m) = (size * radius_m, size * height_m);
     let [x, y] = [foot.x, foot.y].map(|at| at + between(noise, -0.15, 0.15) * radius_m);
     let leaves = pick(noise, greenery);
-    [
-        foliage(
-            [x, y, foot.z + 0.35 * height_m],
-            [radius_m, 0.38 * height_m],
-            leaves,
-        ),
-        foliage(
-            [x, y, foot.z + 0.72 * height_m],
-            [0.65 * radius_m, 0.28 * height_m],
-            pick(noise, greenery),
-        ),
-    ]
+    let low = foliage(
+        [x, y, foot.z + 0.35 * height_m],
+        [radius_m, 0.38 * height_m],
+        leaves,
+    );
+    let high = foliage(
+        [x, y, foot.z + 0.72 * height_m],
+        [0.65 * radius_m, 0.28 * height_m],
+        pick(noise, greenery),
+    );
+    [low, high].map(|part| Solid {
+        ragged: LEAFY,
+        ..part
+    })
 }
 
 fn trunk([x, y]: Spot, radius_m: f32, height_m: f32, greenery: &Greenery) -> Solid {
