@@ -17,6 +17,7 @@ mod programs;
 #[path = "live/serial.rs"]
 mod serial;
 
+use std::fmt::Display;
 use std::sync::atomic::{AtomicU16, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -44,7 +45,7 @@ fn free_port() -> TcpPort {
 }
 
 /// Waits for something to be true.
-fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+fn wait_until(what: impl Display, mut is_so: impl FnMut() -> bool) {
     let since = Instant::now();
     while !is_so() {
         assert!(since.elapsed() < PATIENCE, "waited in vain: {what}");

@@ -1,5 +1,6 @@
 //! `hil emulate` and `hil autopilot` as processes.
 
+use std::fmt;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -84,7 +85,11 @@ impl Program {
 
     /// Waits until it has said that so many times.
     pub fn wait_for_times(&mut self, text: &str, times: usize) {
-        wait_until(text, || {
+        let awaited = Awaited {
+            text,
+            said: Arc::clone(&self.said),
+        };
+        wait_until(awaited, || {
             let ended = self.child.try_wait().expect("a child").is_some();
             if let Some(listener) = self.listener.take_if(|_| ended) {
                 listener.join().expect("all heard");
@@ -113,6 +118,19 @@ impl Program {
         let summary = serde_json::from_reader(stdout)
             .unwrap_or_else(|error| panic!("{error}: {}", self.said()));
         (status, summary, Folder(self.out.clone()))
+    }
+}
+
+/// What a program is to say; for people who want to know what it said instead.
+struct Awaited<'t> {
+    text: &'t str,
+    said: Arc<Mutex<String>>,
+}
+
+impl fmt::Display for Awaited<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let said = self.said.lock().expect("one speaker");
+        write!(f, "`{}`; it said: {said}", self.text)
     }
 }
 
