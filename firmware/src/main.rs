@@ -19,6 +19,7 @@ mod check_in;
 mod clocks;
 mod counters;
 mod executors;
+mod lens_page;
 mod link_port;
 mod log;
 mod retained;
@@ -45,7 +46,11 @@ async fn main(spawner: Spawner) {
 
     let board = Board::new(peripherals);
     let (tx, rx) = defmt::unwrap!(link_port::open(board.link));
-    let pilot = match Retained::open(|| Pilot::new(&Parameters::DEFAULT)) {
+    let parameters = Parameters {
+        lens: lens_page::lens(),
+        ..Parameters::DEFAULT
+    };
+    let pilot = match Retained::open(|| Pilot::new(&parameters)) {
         Ok((pilot, kept)) => {
             log::memory(kept);
             pilot

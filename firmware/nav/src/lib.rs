@@ -34,7 +34,7 @@ pub mod route;
 pub mod snapshot;
 pub mod spectrum;
 
-pub use calibration::{BearingDirection, CalibrationError, LensCalibration};
+pub use calibration::{BearingDirection, CalibrationError, LensCalibration, RecordError};
 pub use exposure::{Exposure, ExposureController, ExposureParameters};
 pub use homing::{HomingParameters, HomingVector, NoVectorReason};
 pub use horizon::Horizon;
@@ -42,7 +42,7 @@ pub use navigator::{
     Arrival, Correction, Event, MapEntry, Mode, Navigator, Parameters, Recording, SetPoint, Source,
     Step, UnknownCommand,
 };
-pub use panorama::PanoramaMap;
+pub use panorama::{FrameLayout, PanoramaMap};
 pub use pose::Pose;
 pub use route::{OdometryVector, Route, RouteFull, StoredSnapshot};
 pub use snapshot::Snapshot;

@@ -8,20 +8,12 @@ use core::f32::consts::TAU;
 use crate::calibration::{BearingDirection, CalibrationError, LensCalibration};
 use crate::horizon::{BEARINGS, Horizon};
 
-/// Pixels in a row of the raw frame (sub-QCIF).
-pub const FRAME_WIDTH: usize = 128;
-/// Rows of the raw frame.
-pub const FRAME_HEIGHT: usize = 96;
-/// Bytes of the raw frame: YUV 4:2:2, U Y V Y, two bytes a pixel.
-pub const FRAME_BYTES: usize = FRAME_WIDTH * FRAME_HEIGHT * 2;
+mod layout;
+
+pub use layout::FrameLayout;
+
 /// Samples along the radius.
 pub const RADII: usize = 16;
-
-/// The offset of luma inside a pixel's two bytes (U Y V Y).
-const LUMA_OFFSET: usize = 1;
-
-/// A raw frame as the sensor sends it and the DMA writes it.
-pub type Frame = [u8; FRAME_BYTES];
 
 /// Where in the frame each bearing and elevation is seen: 128 x 16 byte indices of luma, 4 KiB.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,13 +23,15 @@ pub struct PanoramaMap {
 }
 
 impl PanoramaMap {
-    /// The table for a lens. Takes 128 sines: at start, not for each frame.
+    /// The table for a lens over a sensor with frames of this layout. Takes 128 sines: at start, not
+    /// for each frame.
     ///
     /// # Errors
     ///
-    /// [`CalibrationError`] where the ring makes no sense or leaves the frame.
-    pub fn new(lens: &LensCalibration) -> Result<Self, CalibrationError> {
-        lens.check()?;
+    /// [`CalibrationError`] where the ring makes no sense or leaves the frame, or where the frame is
+    /// too large for the table.
+    pub fn new(lens: &LensCalibration, layout: &FrameLayout) -> Result<Self, CalibrationError> {
+        lens.check(layout)?;
         let mut luma_index = [[0; RADII]; BEARINGS];
         for (bearing, column) in luma_index.iter_mut().enumerate() {
             let turn = bearing as f32 * (TAU / BEARINGS as f32);
@@ -50,7 +44,7 @@ impl PanoramaMap {
                 let radius = radius_of(lens, row);
                 let x = lens.centre_px.0 + radius * cos;
                 let y = lens.centre_px.1 + radius * sin;
-                *index = luma_index_at(x, y);
+                *index = layout.luma_index(x, y);
             }
         }
         Ok(Self { luma_index })
@@ -59,9 +53,11 @@ impl PanoramaMap {
     /// The mean luma of each bearing, turned by the heading (radians, counter-clockwise from north)
     /// so that bearing zero is north.
     ///
+    /// `frame` has the layout that the map was made for; bytes that it lacks count as black.
+    ///
     /// The turn is a whole number of columns; the horizon carries the rest of it, and its spectrum
     /// is turned by that exactly.
-    pub fn horizon(&self, frame: &Frame, heading: f32) -> Horizon {
+    pub fn horizon(&self, frame: &[u8], heading: f32) -> Horizon {
         let columns = heading * (BEARINGS as f32 / TAU);
         let whole = libm::roundf(columns);
         let residual = (columns - whole) * (TAU / BEARINGS as f32);
@@ -80,7 +76,7 @@ impl PanoramaMap {
 
     /// The unwrapped panorama, not turned: rows from the highest elevation to the lowest, columns
     /// by body bearing.
-    pub fn unwrap(&self, frame: &Frame) -> [[u8; BEARINGS]; RADII] {
+    pub fn unwrap(&self, frame: &[u8]) -> [[u8; BEARINGS]; RADII] {
         let mut image = [[0; BEARINGS]; RADII];
         for (row, pixels) in image.iter_mut().enumerate() {
             for (pixel, column) in pixels.iter_mut().zip(&self.luma_index) {
@@ -102,20 +98,13 @@ fn radius_of(lens: &LensCalibration, row: usize) -> f32 {
     }
 }
 
-/// The byte index of the luma of the pixel that covers (x, y).
-fn luma_index_at(x: f32, y: f32) -> u16 {
-    // A float cast saturates; the check of the calibration keeps x and y inside anyway.
-    let column = (x as usize).min(FRAME_WIDTH - 1);
-    let row = (y as usize).min(FRAME_HEIGHT - 1);
-    ((row * FRAME_WIDTH + column) * 2 + LUMA_OFFSET) as u16
-}
-
-fn luma_at(frame: &Frame, index: u16) -> u8 {
-    // Always inside: see `luma_index_at`. The zero is never read, it only replaces a panic path.
+fn luma_at(frame: &[u8], index: u16) -> u8 {
+    // Always inside a frame of the map's layout. The zero stands for the bytes that a shorter one
+    // lacks, in place of a panic.
     frame.get(usize::from(index)).copied().unwrap_or(0)
 }
 
-fn mean(frame: &Frame, column: &[u16; RADII]) -> f32 {
+fn mean(frame: &[u8], column: &[u16; RADII]) -> f32 {
     let sum: u16 = column
         .iter()
         .map(|&index| u16::from(luma_at(frame, index)))

@@ -22,17 +22,19 @@ use heapless::Vec;
 use link::{Message, State};
 use nalgebra::Point2;
 use nav::navigator::EVENTS_PER_STEP;
-use nav::panorama::FRAME_BYTES;
 use nav::{
-    CalibrationError, ExposureController, ExposureParameters, LensCalibration, Navigator,
-    PanoramaMap, Pose, SetPoint, Spectrum, Step,
+    CalibrationError, ExposureController, ExposureParameters, FrameLayout, LensCalibration,
+    Navigator, PanoramaMap, Pose, SetPoint, Spectrum, Step,
 };
 
 pub use nav::{Event, Exposure};
 pub use outbox::{Outbox, PERIOD_BYTES};
 
-/// One frame as the camera delivers it: 128 x 96 pixels, U Y V Y.
-pub type Frame = [u8; FRAME_BYTES];
+/// The frames that the camera delivers: 128 x 96 pixels, U Y V Y.
+pub const FRAME_LAYOUT: FrameLayout = FrameLayout::SUBQCIF_UYVY;
+
+/// One frame as the camera delivers it.
+pub type Frame = [u8; FRAME_LAYOUT.bytes()];
 
 /// What happened in the answer to one message.
 pub type Events = Vec<Event, EVENTS_PER_STEP>;
@@ -110,7 +112,7 @@ impl Pilot {
     /// [`CalibrationError`] where the lens makes no sense.
     pub fn new(parameters: &Parameters) -> Result<Self, CalibrationError> {
         Ok(Self {
-            map: PanoramaMap::new(&parameters.lens)?,
+            map: PanoramaMap::new(&parameters.lens, &FRAME_LAYOUT)?,
             exposure: ExposureController::new(parameters.exposure),
             navigator: Navigator::new(parameters.navigator),
             view: None,

@@ -1,7 +1,7 @@
 //! The emulated board: the image that would be flashed, on an STM32F407 in software.
 
 use defmt_decoder::Table;
-use emulator::image::Image;
+use emulator::image::{Image, ImageError};
 use emulator::machine::Machine;
 use emulator::time::Nanos;
 use fake_sensors::camera::Pose;
@@ -11,6 +11,7 @@ use super::camera::Camera;
 use super::firmware_log::{self, LogDecoder};
 use super::rtt::UpChannel;
 use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog};
+use crate::scenario::LensPage;
 
 /// The crystal on the flight board, hertz.
 const CRYSTAL_HZ: u32 = 8_000_000;
@@ -25,11 +26,16 @@ const MILLISECOND: Nanos = Nanos::from_millis(1);
 /// The function whose cycles are a frame's cycles.
 const VISION_FUNCTION: &str = "vision_frame";
 
-/// An image and its log table; boards borrow it.
+/// The symbol of the lens record's page.
+const LENS_PAGE: &str = "_lens_page";
+
+/// What is in the chip's flash, an image and perhaps a lens record, and the image's log table; boards
+/// borrow it.
 #[derive(Debug)]
 pub struct Firmware {
     image: Image,
     table: Table,
+    lens: Option<LensPage>,
 }
 
 impl Firmware {
@@ -38,7 +44,34 @@ impl Firmware {
         Ok(Self {
             image: Image::parse(elf)?,
             table: firmware_log::table(elf)?,
+            lens: None,
         })
+    }
+
+    /// The same with a lens record; none leaves its page erased.
+    #[must_use]
+    pub fn with_lens(self, lens: Option<LensPage>) -> Self {
+        Self { lens, ..self }
+    }
+
+    /// Where the image looks for the lens record.
+    pub fn lens_page_address(&self) -> Result<u32, BoardError> {
+        let symbol = self.image.symbol(LENS_PAGE);
+        Ok(symbol.ok_or(BoardError::NoSymbol(LENS_PAGE))?.address)
+    }
+
+    /// A chip with all of it, switched on.
+    fn machine(&self, camera: Camera) -> Result<Machine<Camera>, BoardError> {
+        let mut machine = Machine::new(&self.image, CRYSTAL_HZ, camera)?;
+        if let Some(lens) = &self.lens {
+            let (address, bytes) = (self.lens_page_address()?, lens.bytes());
+            let placed = machine.memory_mut().place(address, bytes);
+            placed.ok_or(ImageError::OutsideMemory {
+                address,
+                len: bytes.len(),
+            })?;
+        }
+        Ok(machine)
     }
 
     /// Bytes of flash.
@@ -80,7 +113,7 @@ impl<'f> Emulated<'f> {
             .address;
         let channel =
             UpChannel::of(&firmware.image).ok_or(BoardError::NoSymbol(UpChannel::SYMBOL))?;
-        let mut machine = Machine::new(&firmware.image, CRYSTAL_HZ, camera)?;
+        let mut machine = firmware.machine(camera)?;
         machine.trace_calls(vision);
         let mut board = Self {
             channel,

@@ -3,6 +3,7 @@
 
 use fake_sensors::camera::Pose;
 use link::{Event, Frame, Parser, Refused};
+use nav::{LensCalibration, RecordError};
 use pilot::{Outbox, Pilot};
 
 use super::camera::Camera;
@@ -45,6 +46,17 @@ impl Native {
             log: Vec::new(),
             frames_processed: 0,
         }
+    }
+
+    /// Says which lens the pilot has, as the firmware does at boot.
+    pub fn log_lens(&mut self, record: &Result<LensCalibration, RecordError>) {
+        let (level, text) = match record {
+            Ok(lens) => ("info", in_figures(lens)),
+            Err(RecordError::Empty) => ("info", "none, the default lens is taken".to_owned()),
+            Err(error) => ("warn", format!("{error:?}, the default lens is taken")),
+        };
+        let text = format!("lens record: {text}");
+        self.log.push(FirmwareLog::Line { level, text });
     }
 
     /// Messages of this millisecond. They are through a third of it (28 bytes of a STATE at
@@ -113,6 +125,13 @@ impl Native {
             gain: wanted.gain,
         }));
     }
+}
+
+/// In the firmware's words.
+fn in_figures(lens: &LensCalibration) -> String {
+    let ((x, y), horizon) = (lens.centre_px, lens.horizon_radius_px);
+    let (inner, outer) = (lens.inner_radius_px, lens.outer_radius_px);
+    format!("centre {x:?} {y:?} px, band {inner:?} to {outer:?} px, horizon {horizon:?} px")
 }
 
 /// In the firmware's words.

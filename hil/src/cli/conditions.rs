@@ -1,9 +1,11 @@
 //! Options for what a flight is up against; shared by `fly` and `campaign`.
 
+use std::path::Path;
+
 use autopilot::app::Quirks;
 use clap::Args;
 
-use crate::scenario::{Conditions, Correction, Quirk, Wind};
+use crate::scenario::{Conditions, Correction, LensPage, Quirk, Wind};
 
 /// The wind of the strongest gale, m/s (Beaufort 12 begins at 32.7 m/s).
 const STRONGEST_WIND_M_S: f64 = 32.0;
@@ -31,6 +33,9 @@ pub struct ConditionArguments {
     /// Wind, m/s, from a direction that the seed draws; after a comma, turbulence as a share of it
     #[arg(long, value_name = "MEAN[,TURBULENCE]", value_parser = parse_wind)]
     wind: Option<Wind>,
+    /// The lens record in the board's flash, as `hil calibrate` writes it [default: none]
+    #[arg(long, value_name = "FILE", value_parser = parse_lens)]
+    lens: Option<LensPage>,
 }
 
 impl ConditionArguments {
@@ -50,6 +55,7 @@ impl ConditionArguments {
             quirks,
             correction: self.correction,
             wind: self.wind,
+            lens: self.lens,
         }
     }
 }
@@ -72,6 +78,10 @@ fn parse_time(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|seconds: &f64| seconds.is_finite() && *seconds >= 0.0)
         .ok_or_else(|| "a time in seconds from the start of the flight".to_owned())
+}
+
+fn parse_lens(text: &str) -> Result<LensPage, String> {
+    LensPage::from_file(Path::new(text)).map_err(|error| error.to_string())
 }
 
 fn parse_wind(text: &str) -> Result<Wind, String> {

@@ -14,6 +14,7 @@ use ::autopilot::app;
 use fake_sensors::camera::tcm8230::Tcm8230;
 use fake_sensors::camera::{PanoramicCamera, PanoramicLens};
 use fake_sensors::world::{UnknownWorld, World};
+use nav::RecordError;
 use pilot::Pilot;
 
 use crate::board::camera::Camera;
@@ -86,12 +87,18 @@ pub fn fly_native(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Flown, FlightError> {
     let started = Instant::now();
-    let parameters = pilot::Parameters::DEFAULT;
+    let record = scenario.conditions.lens.map(|page| page.lens());
+    let lens = record.unwrap_or(Err(RecordError::Empty));
+    let parameters = pilot::Parameters {
+        lens: lens.unwrap_or_default(),
+        ..pilot::Parameters::DEFAULT
+    };
     let pilot = Pilot::new(&parameters).map_err(BoardError::Calibration)?;
     let initial = pilot.exposure();
     let chip = Tcm8230::streaming(0, EXTCLK_HZ, initial.shutter_lines, initial.gain);
     let world = World::named(&scenario.world, scenario.seed)?;
     let mut board = Native::new(pilot, camera(scenario, &world, chip));
+    board.log_lens(&lens);
     fly(scenario, &world, &mut board, None, started, progress)
 }
 
@@ -102,7 +109,7 @@ pub fn fly_emulated(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Flown, FlightError> {
     let started = Instant::now();
-    let firmware = Firmware::parse(elf)?;
+    let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
     let world = World::named(&scenario.world, scenario.seed)?;
     let mut board = Emulated::boot(&firmware, camera(scenario, &world, Tcm8230::default()))?;
     fly(

@@ -4,6 +4,8 @@ use autopilot::app::{CorrectionSd, Quirks};
 use clap::ValueEnum;
 use serde::{Serialize, Serializer};
 
+use super::LensPage;
+
 /// Nothing out of the ordinary, by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Conditions {
@@ -18,6 +20,9 @@ pub struct Conditions {
     pub correction: Correction,
     /// The wind; none for still air.
     pub wind: Option<Wind>,
+    /// What the flash page of the lens record holds; none where it is erased.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lens: Option<LensPage>,
 }
 
 /// How firmly the autopilot's filter is told to believe a correction.

@@ -1,12 +1,14 @@
 //! What is to be flown: route, world, seed and the navigator's settings.
 
 mod conditions;
+mod lens;
 
 use autopilot::app;
 use clap::ValueEnum;
 use link::{Record, WorldPoint};
 
 pub use conditions::{Conditions, Correction, Quirk, Wind};
+pub use lens::{LensFileError, LensPage};
 
 /// The scripted way out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]

@@ -9,6 +9,13 @@ use super::*;
 use crate::horizon::BEARING_STEP_RAD;
 use crate::spectrum::Spectrum;
 
+const LAYOUT: FrameLayout = FrameLayout::SUBQCIF_UYVY;
+const FRAME_BYTES: usize = LAYOUT.bytes();
+const FRAME_WIDTH: usize = LAYOUT.width as usize;
+const FRAME_HEIGHT: usize = LAYOUT.height as usize;
+
+type Frame = [u8; FRAME_BYTES];
+
 /// A frame of a world whose luma depends on the bearing alone, seen by a drone of this heading.
 fn frame(lens: &LensCalibration, heading: f32, luma: impl Fn(f32) -> f32) -> Box<Frame> {
     let mut frame = Box::new([0xEE; FRAME_BYTES]);
@@ -45,9 +52,9 @@ fn two_waves(bearing: f32) -> f32 {
 #[test]
 fn the_horizon_shows_what_the_world_is_at_each_bearing() {
     for lens in lenses() {
-        let map = PanoramaMap::new(&lens).unwrap();
+        let map = PanoramaMap::new(&lens, &LAYOUT).unwrap();
         for heading in [0.0, 1.0, -2.5, 3.0, 40.0] {
-            let horizon = map.horizon(&frame(&lens, heading, two_waves), heading);
+            let horizon = map.horizon(&frame(&lens, heading, two_waves)[..], heading);
             for (n, value) in horizon.luma().iter().enumerate() {
                 let bearing = n as f32 * BEARING_STEP_RAD + horizon.residual_rad();
                 // Half a pixel at radius 18 is 1.6 degrees; the mean over the radius is better.
@@ -60,8 +67,8 @@ fn the_horizon_shows_what_the_world_is_at_each_bearing() {
 #[test]
 fn the_spectrum_does_not_depend_on_the_heading() {
     let lens = LensCalibration::DEFAULT;
-    let map = PanoramaMap::new(&lens).unwrap();
-    let view = |heading| Spectrum::of(&map.horizon(&frame(&lens, heading, two_waves), heading));
+    let map = PanoramaMap::new(&lens, &LAYOUT).unwrap();
+    let view = |heading| Spectrum::of(&map.horizon(&frame(&lens, heading, two_waves)[..], heading));
     let north = view(0.0);
     for heading in [0.01, 0.5, FRAC_PI_2, PI, -3.0] {
         let turned = view(heading);
@@ -74,11 +81,11 @@ fn the_spectrum_does_not_depend_on_the_heading() {
 #[test]
 fn the_rest_of_the_heading_turns_the_spectrum_exactly() {
     let lens = LensCalibration::DEFAULT;
-    let map = PanoramaMap::new(&lens).unwrap();
+    let map = PanoramaMap::new(&lens, &LAYOUT).unwrap();
     let frame = frame(&lens, 0.0, two_waves);
-    let whole = Spectrum::of(&map.horizon(&frame, 17.0 * BEARING_STEP_RAD));
+    let whole = Spectrum::of(&map.horizon(&frame[..], 17.0 * BEARING_STEP_RAD));
     let rest = 0.3 * BEARING_STEP_RAD;
-    let both = Spectrum::of(&map.horizon(&frame, 17.0 * BEARING_STEP_RAD + rest));
+    let both = Spectrum::of(&map.horizon(&frame[..], 17.0 * BEARING_STEP_RAD + rest));
     for (a, b) in whole
         .rotated(-rest)
         .coefficients()
@@ -92,14 +99,14 @@ fn the_rest_of_the_heading_turns_the_spectrum_exactly() {
 #[test]
 fn the_first_row_looks_up() {
     for lens in lenses() {
-        let map = PanoramaMap::new(&lens).unwrap();
+        let map = PanoramaMap::new(&lens, &LAYOUT).unwrap();
         let mut frame = Box::new([0; FRAME_BYTES]);
         for (index, byte) in frame.iter_mut().enumerate() {
             let x = (index / 2 % FRAME_WIDTH) as f32 + 0.5 - lens.centre_px.0;
             let y = (index / 2 / FRAME_WIDTH) as f32 + 0.5 - lens.centre_px.1;
             *byte = libm::hypotf(x, y) as u8;
         }
-        let image = map.unwrap(&frame);
+        let image = map.unwrap(&frame[..]);
         let (first, last) = (image[0][0], image[RADII - 1][0]);
         assert_eq!(first < last, lens.inner_is_up);
     }
@@ -107,7 +114,7 @@ fn the_first_row_looks_up() {
 
 #[test]
 fn a_heading_that_is_not_finite_does_no_harm() {
-    let map = PanoramaMap::new(&LensCalibration::DEFAULT).unwrap();
+    let map = PanoramaMap::new(&LensCalibration::DEFAULT, &LAYOUT).unwrap();
     for heading in [f32::NAN, f32::INFINITY, f32::MAX, f32::MIN] {
         let horizon = map.horizon(&[7; FRAME_BYTES], heading);
         assert_eq!(horizon.mean(), 7.0);
@@ -129,6 +136,7 @@ proptest! {
             inner_radius_px: inner,
             outer_radius_px: inner + span,
             horizon_radius_px: inner + 0.5 * span,
+            vertical_field_rad: 1.0,
             zero_bearing_rad: zero,
             direction: if clockwise {
                 BearingDirection::Clockwise
@@ -137,7 +145,7 @@ proptest! {
             },
             inner_is_up,
         };
-        if let Ok(map) = PanoramaMap::new(&lens) {
+        if let Ok(map) = PanoramaMap::new(&lens, &LAYOUT) {
             for &index in map.luma_index.iter().flatten() {
                 prop_assert!(index % 2 == 1 && usize::from(index) < FRAME_BYTES);
             }

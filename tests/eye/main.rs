@@ -1,0 +1,3 @@
+//! The lens, from the record in flash to the horizon.
+
+mod lens_record;
