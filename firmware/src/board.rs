@@ -5,10 +5,9 @@
 //! USART2 and I2C2 use DMA1: DMA2 must not serve an APB2 peripheral while it moves pixels (data
 //! corruption, errata sheet ES0182).
 
-use embassy_stm32::gpio::{AfType, Flex, Pin, Pull};
 use embassy_stm32::peripherals::{
-    DCMI, DMA1_CH2, DMA1_CH5, DMA1_CH6, DMA1_CH7, DMA2_CH1, I2C2, IWDG, PA2, PA3, PA7, PB10, PB11,
-    PD2, TIM3, USART2,
+    DMA1_CH2, DMA1_CH5, DMA1_CH6, DMA1_CH7, I2C2, IWDG, PA2, PA3, PA7, PB10, PB11, PD2, TIM3,
+    USART2,
 };
 use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, i2c, usart};
 
@@ -18,6 +17,7 @@ bind_interrupts!(
     /// Interrupt vectors and who serves them.
     pub struct Irqs {
         DCMI => capture::InterruptHandler;
+        DMA2_STREAM1 => capture::DmaInterruptHandler;
         I2C2_EV => i2c::EventInterruptHandler<I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<I2C2>;
         USART2 => usart::InterruptHandler<USART2>;
@@ -27,16 +27,6 @@ bind_interrupts!(
         DMA1_STREAM7 => dma::InterruptHandler<DMA1_CH7>;
     }
 );
-
-/// The alternate function of every DCMI pin (DS8626 table 9).
-const DCMI_FUNCTION: u8 = 13;
-
-/// The parallel camera bus: DCMI and the DMA stream that empties it.
-pub struct CameraPort {
-    /// Owned so that nobody else drives them; the capture speaks to their registers.
-    _owned: (Peri<'static, DCMI>, Peri<'static, DMA2_CH1>),
-    _pins: [Flex<'static>; 11],
-}
 
 /// The image sensor's clock, reset and I2C.
 pub struct SensorPort {
@@ -82,7 +72,7 @@ pub struct LinkPort {
 /// The whole board, in the parts its tasks own.
 pub struct Board {
     /// For the camera task.
-    pub camera: CameraPort,
+    pub camera: capture::Port,
     /// For the exposure task.
     pub sensor: SensorPort,
     /// For the link tasks.
@@ -95,23 +85,20 @@ impl Board {
     /// Deals out the chip.
     pub fn new(p: Peripherals) -> Self {
         let pins = [
-            dcmi_pin(p.PC6),  // D0
-            dcmi_pin(p.PC7),  // D1
-            dcmi_pin(p.PC8),  // D2
-            dcmi_pin(p.PC9),  // D3
-            dcmi_pin(p.PC11), // D4
-            dcmi_pin(p.PB6),  // D5
-            dcmi_pin(p.PB8),  // D6
-            dcmi_pin(p.PB9),  // D7
-            dcmi_pin(p.PB7),  // VSYNC
-            dcmi_pin(p.PA4),  // HSYNC
-            dcmi_pin(p.PA6),  // PIXCLK
+            capture::pin(p.PC6),  // D0
+            capture::pin(p.PC7),  // D1
+            capture::pin(p.PC8),  // D2
+            capture::pin(p.PC9),  // D3
+            capture::pin(p.PC11), // D4
+            capture::pin(p.PB6),  // D5
+            capture::pin(p.PB8),  // D6
+            capture::pin(p.PB9),  // D7
+            capture::pin(p.PB7),  // VSYNC
+            capture::pin(p.PA4),  // HSYNC
+            capture::pin(p.PA6),  // PIXCLK
         ];
         Self {
-            camera: CameraPort {
-                _owned: (p.DCMI, p.DMA2_CH1),
-                _pins: pins,
-            },
+            camera: capture::Port::new(p.DCMI, p.DMA2_CH1, pins),
             sensor: SensorPort {
                 clock: p.TIM3,
                 clock_pin: p.PA7,
@@ -134,12 +121,4 @@ impl Board {
             watchdog: p.IWDG,
         }
     }
-}
-
-/// Pulled down, to the level at which the syncs say "no data": a camera that is not there, or not
-/// powered, is silent instead of noisy.
-fn dcmi_pin(pin: Peri<'static, impl Pin>) -> Flex<'static> {
-    let mut pin = Flex::new(pin);
-    pin.set_as_af_unchecked(DCMI_FUNCTION, AfType::input(Pull::Down));
-    pin
 }

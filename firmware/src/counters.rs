@@ -2,6 +2,8 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
+use crate::capture::Fault;
+
 /// A count that any task or interrupt may raise.
 #[derive(Default)]
 pub struct Counter(AtomicU32);
@@ -40,12 +42,8 @@ pub struct Counters {
     pub frames_missed: Counter,
     /// Frames that the DMA began to overwrite while vision read them.
     pub frames_torn: Counter,
-    /// Captures that ended with too few or too many bytes.
-    pub frames_broken: Counter,
-    /// Captures that lost bytes because the DMA came too late.
-    pub overruns: Counter,
-    /// Times the camera sent no frame for the time-out of the camera task.
-    pub camera_silent: Counter,
+    /// Faults of the capture, by name: see [`Counters::capture`].
+    capture: [Counter; Fault::ALL.len()],
     /// Failed dealings with the image sensor, each after the driver's own retries.
     pub sensor_faults: Counter,
     /// Link messages decoded.
@@ -60,14 +58,19 @@ pub struct Counters {
     pub tx_dropped: Counter,
 }
 
+impl Counters {
+    /// How often the capture met this fault.
+    pub fn capture(&self, fault: Fault) -> &Counter {
+        &self.capture[fault as usize]
+    }
+}
+
 /// The counts of this board.
 pub static COUNTERS: Counters = Counters {
     frames: Counter::new(),
     frames_missed: Counter::new(),
     frames_torn: Counter::new(),
-    frames_broken: Counter::new(),
-    overruns: Counter::new(),
-    camera_silent: Counter::new(),
+    capture: [const { Counter::new() }; Fault::ALL.len()],
     sensor_faults: Counter::new(),
     link_ok: Counter::new(),
     link_bad: Counter::new(),

@@ -4,8 +4,9 @@
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant};
 
+use crate::capture::Fault;
 use crate::clocks;
 use crate::counters::COUNTERS;
 
@@ -68,6 +69,34 @@ pub fn event(event: &pilot::Event) {
     defmt::info!("{}", event);
 }
 
+/// The log of the capture's faults.
+pub struct CaptureFaults {
+    /// When each was told last.
+    told: [Option<Instant>; Fault::ALL.len()],
+}
+
+impl CaptureFaults {
+    /// Least time between two lines of one name: a broken cable makes 25 faults a second. [`health`]
+    /// counts all.
+    const PERIOD: Duration = Duration::from_secs(1);
+
+    /// Nothing was told yet.
+    pub const fn new() -> Self {
+        Self {
+            told: [None; Fault::ALL.len()],
+        }
+    }
+
+    /// Once per fault, but no more often than once a second for each name.
+    pub fn tell(&mut self, fault: Fault) {
+        let told = &mut self.told[fault as usize];
+        if told.is_none_or(|last| last.elapsed() >= Self::PERIOD) {
+            *told = Some(Instant::now());
+            defmt::warn!("capture fault {=str}", fault.name());
+        }
+    }
+}
+
 /// Once a second: the counts since boot.
 pub fn health() {
     let c = &COUNTERS;
@@ -81,12 +110,15 @@ pub fn health() {
         c.tx_dropped.get()
     );
     defmt::info!(
-        "faults broken {=u32} overruns {=u32} silent {=u32} sensor {=u32} uart {=u32} queue {=u32}",
-        c.frames_broken.get(),
-        c.overruns.get(),
-        c.camera_silent.get(),
+        "faults sensor {=u32} uart {=u32} queue {=u32}",
         c.sensor_faults.get(),
         c.uart_errors.get(),
         c.queue_full.get()
     );
+    for fault in Fault::ALL {
+        let count = c.capture(fault).get();
+        if count > 0 {
+            defmt::info!("capture faults {=str} {=u32}", fault.name(), count);
+        }
+    }
 }

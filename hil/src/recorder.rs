@@ -150,6 +150,9 @@ impl Recorder {
                 FirmwareLog::LinkDrop { message, why } => {
                     self.link_drop(now_ms, Side::Camera, message, why);
                 }
+                FirmwareLog::CaptureFault { name } => {
+                    self.line(t, "firmware", "warn", format!("capture fault: {name}"));
+                }
                 FirmwareLog::Line { level, text } => self.line(t, "firmware", level, text),
             }
         }

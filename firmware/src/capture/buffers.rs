@@ -9,14 +9,17 @@ use sensor::tcm8230::GEOMETRY;
 pub const FRAME_BYTES: usize = GEOMETRY.frame_bytes();
 
 /// Words of a frame; the DMA moves words.
-pub const FRAME_WORDS: u16 = (FRAME_BYTES / 4) as u16;
+pub const FRAME_WORDS: u32 = (FRAME_BYTES / 4) as u32;
+
+/// Words of a line.
+pub const LINE_WORDS: u32 = (GEOMETRY.line_bytes() / 4) as u32;
 
 /// A frame as its readers see it.
 pub type Bytes = [u8; FRAME_BYTES];
 
 /// The sensor's frames are the pilot's.
 const _: fn(&Bytes) -> &pilot::Frame = |bytes| bytes;
-const _: () = assert!(FRAME_BYTES.is_multiple_of(4) && FRAME_BYTES / 4 <= u16::MAX as usize);
+const _: () = assert!(GEOMETRY.line_bytes().is_multiple_of(4) && FRAME_WORDS <= u16::MAX as u32);
 
 /// Which of the two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

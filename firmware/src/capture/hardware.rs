@@ -1,41 +1,63 @@
 //! The registers: DCMI (RM0090 §15) and DMA2 stream 1, channel 1 (RM0090 §10, table 43).
 
+use embassy_stm32::pac::dcmi::regs;
 use embassy_stm32::pac::dma::vals::{Ct, Dir, Dmdis, Pl, Size};
 use embassy_stm32::pac::{DCMI, DMA2};
 use embassy_stm32::{peripherals, rcc};
-use sensor::tcm8230::GEOMETRY;
 
 use super::buffers::{Buffer, FRAME_WORDS, address};
 
 const STREAM: usize = 1;
 const CHANNEL: u8 = 1;
 
+/// Where the stream's flags are: four streams share a register.
+const FLAGS: usize = STREAM / 4;
+const FLAG: usize = STREAM % 4;
+
 /// Polls of a bit that the hardware changes within a few bus cycles. A bound, so that broken
 /// hardware cannot hold the interrupt.
-const POLLS: u32 = 1000;
+const POLLS: u32 = 100;
 
-/// The most words that can be under way between the bus and memory at the end of a frame: the
-/// FIFO of the DCMI (RM0090 §15.5.3) and the word in the DMA's hands.
-const WORDS_UNDER_WAY: u16 = 5;
+/// What the DCMI has to say: the flags that raised its interrupt.
+#[derive(Clone, Copy)]
+pub struct Events(regs::Mis);
 
-/// What the DCMI has to say.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
-    /// The last row of the window is complete, or the frame ended before it.
-    FrameEnd,
+impl Events {
     /// A byte came before the one four words ahead of it was fetched.
-    Overrun,
+    pub fn overrun(self) -> bool {
+        self.0.ovr_mis()
+    }
+
+    /// A line has ended on the wires.
+    pub fn line(self) -> bool {
+        self.0.line_mis()
+    }
+
+    /// A frame has ended on the wires.
+    pub fn sync(self) -> bool {
+        self.0.vsync_mis()
+    }
+
+    /// A frame has ended that was being captured.
+    pub fn frame(self) -> bool {
+        self.0.frame_mis()
+    }
 }
 
 /// Takes back all that was under way and captures from the next start of frame on into `first`,
 /// then into the other buffer, and so on in turn.
 pub fn start(first: Buffer) {
+    stop();
+    start_stream(first);
+    start_interface();
+}
+
+/// Takes back all that was under way: no byte moves afterwards.
+pub fn stop() {
     // The reset takes the interface out of the middle of a frame, and empties its FIFO, which
     // clearing its enable bit may leave with half a word.
     rcc::enable_and_reset_without_stop::<peripherals::DCMI>();
     stop_stream();
-    start_stream(first);
-    start_interface();
 }
 
 fn stop_stream() {
@@ -47,12 +69,12 @@ fn stop_stream() {
         }
     }
     // A stream does not start while flags of its last run stand (RM0090 §10.3.17).
-    DMA2.ifcr(STREAM / 4).write(|flags| {
-        flags.set_tcif(STREAM % 4, true);
-        flags.set_htif(STREAM % 4, true);
-        flags.set_teif(STREAM % 4, true);
-        flags.set_dmeif(STREAM % 4, true);
-        flags.set_feif(STREAM % 4, true);
+    DMA2.ifcr(FLAGS).write(|flags| {
+        flags.set_tcif(FLAG, true);
+        flags.set_htif(FLAG, true);
+        flags.set_teif(FLAG, true);
+        flags.set_dmeif(FLAG, true);
+        flags.set_feif(FLAG, true);
     });
 }
 
@@ -63,7 +85,7 @@ fn start_stream(first: Buffer) {
     stream.par().write_value(DCMI.dr().as_ptr() as u32);
     stream.m0ar().write_value(address(Buffer::A));
     stream.m1ar().write_value(address(Buffer::B));
-    stream.ndtr().write(|ndtr| ndtr.set_ndt(FRAME_WORDS));
+    stream.ndtr().write(|ndtr| ndtr.set_ndt(FRAME_WORDS as u16));
     stream.fcr().write(|fcr| fcr.set_dmdis(Dmdis::ENABLED));
     stream.cr().write(|cr| {
         cr.set_chsel(CHANNEL);
@@ -74,24 +96,23 @@ fn start_stream(first: Buffer) {
         cr.set_dbm(true);
         cr.set_ct(memory_of(first));
         cr.set_pl(Pl::VERY_HIGH);
+        cr.set_teie(true);
+        cr.set_dmeie(true);
     });
     stream.cr().modify(|cr| cr.set_en(true));
 }
 
-/// The window begins at the first clock of the first row, as after reset.
+/// No window: it would hide the bytes that a line has too many.
 fn start_interface() {
-    DCMI.cwsize().write(|window| {
-        window.set_capcnt(GEOMETRY.line_bytes() as u16 - 1);
-        window.set_vline(GEOMETRY.height - 1);
-    });
     DCMI.ier().write(|enable| {
         enable.set_frame_ie(true);
         enable.set_ovr_ie(true);
+        enable.set_line_ie(true);
+        enable.set_vsync_ie(true);
     });
     // Continuous mode and eight bits are zeros. The TCM8230 gives data at the rising clock edge,
     // while both syncs are high: low is the level of "no data".
     DCMI.cr().write(|cr| {
-        cr.set_crop(true);
         cr.set_pckpol(true);
         cr.set_vspol(false);
         cr.set_hspol(false);
@@ -100,44 +121,56 @@ fn start_interface() {
     DCMI.cr().modify(|cr| cr.set_capture(true));
 }
 
-/// The event that raised the interrupt, acknowledged. An overrun spoils the frame it ends with.
-pub fn take_event() -> Option<Event> {
+/// The events that raised the interrupt, acknowledged.
+pub fn take_events() -> Events {
     let flags = DCMI.mis().read();
     DCMI.icr().write(|clear| {
         clear.set_frame_isc(flags.frame_mis());
         clear.set_ovr_isc(flags.ovr_mis());
+        clear.set_line_isc(flags.line_mis());
+        clear.set_vsync_isc(flags.vsync_mis());
     });
-    if flags.ovr_mis() {
-        Some(Event::Overrun)
-    } else if flags.frame_mis() {
-        Some(Event::FrameEnd)
-    } else {
-        None
-    }
+    Events(flags)
 }
 
-/// At the end of a frame: whether it has filled `buffer` to its last word and nothing more. Waits
-/// for the words under way.
-pub fn has_filled(buffer: Buffer) -> bool {
+/// Whether the DMA was refused a transfer, or lost one.
+pub fn stream_failed() -> bool {
+    let flags = DMA2.isr(FLAGS).read();
+    flags.teif(FLAG) || flags.dmeif(FLAG)
+}
+
+/// Whether the DMA serves the interface. The hardware stops a stream whose transfer failed.
+pub fn stream_runs() -> bool {
+    DMA2.st(STREAM).cr().read().en()
+}
+
+/// Whether the pixels of a line are on the wires now.
+pub fn is_mid_line() -> bool {
+    !DCMI.sr().read().hsync()
+}
+
+/// Words of the frame that is coming that are in memory. More than a frame's where it runs over
+/// into the other buffer.
+pub fn words_stored() -> u32 {
+    let full = DMA2.isr(FLAGS).read().tcif(FLAG);
+    let left = u32::from(DMA2.st(STREAM).ndtr().read().ndt());
+    u32::from(full) * FRAME_WORDS + FRAME_WORDS - left
+}
+
+/// As [`words_stored`], at the end of a line or frame: waits for the words that are under way
+/// between the bus and memory.
+pub fn words_taken() -> u32 {
     for _ in 0..POLLS {
-        if target() != memory_of(buffer) || words_left() > WORDS_UNDER_WAY {
+        if !DCMI.sr().read().fne() {
             break;
         }
     }
-    target() != memory_of(buffer) && !frame_has_begun()
+    words_stored()
 }
 
-/// Whether the buffer that is being filled holds words already.
-pub fn frame_has_begun() -> bool {
-    words_left() != FRAME_WORDS
-}
-
-fn target() -> Ct {
-    DMA2.st(STREAM).cr().read().ct()
-}
-
-fn words_left() -> u16 {
-    DMA2.st(STREAM).ndtr().read().ndt()
+/// After a whole frame: counts the words of the next from zero.
+pub fn begin_next_frame() {
+    DMA2.ifcr(FLAGS).write(|flags| flags.set_tcif(FLAG, true));
 }
 
 fn memory_of(buffer: Buffer) -> Ct {

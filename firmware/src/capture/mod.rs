@@ -1,70 +1,169 @@
-//! Continuous capture: DCMI into two buffers by DMA in hardware double-buffer mode.
+//! Continuous capture that never hangs: DCMI into two buffers by DMA in hardware double-buffer
+//! mode, on the registers (STM32F405/407/415/417, RM0090 §15 and §10).
 //!
+//! ```text
+//! let mut capture = Capture::start(port);
+//! // ... set the sensor up, then:
+//! capture.expect_signal(Instant::now() + first_frame);
+//! loop {
+//!     match capture.next().await {
+//!         Ok(frame) => { let (result, integrity) = frame.read(|bytes| ...); }
+//!         Err(fault) => ..., // counted, logged; the capture has recovered by itself
+//!     }
+//! }
+//! ```
+//!
+//! # Why not the HAL's
+//! `embassy_stm32::dcmi::Dcmi::capture` takes one frame and stops. It waits for the interface and
+//! for the DMA, both: after an overrun, a short frame or a lost vertical sync the DMA never ends,
+//! and neither does the wait. Dropping its future leaves the interface running with half a word in
+//! its FIFO, so that the next frame arrives shifted. And between two calls a frame is lost unless
+//! the second is made within the vertical blanking.
+//!
+//! # How
 //! The DMA fills the buffers in turn and never waits: no frame is lost between captures, and none
-//! is copied. The window is cropped to the picture, so that the end-of-frame interrupt comes with
-//! its last row, and not with the end of the vertical sync 1.3 ms later. At each end of frame the
-//! interrupt checks that exactly one buffer was filled; where it was not, the stream has lost its
-//! place, and capture starts afresh with the next frame.
+//! is copied. Interrupts at the end of each line and of each frame hold the count of words in
+//! memory against the count of lines: 64 words a line, 96 lines a frame. Whatever does not fit is a
+//! [`Fault`] with a name, and capture starts afresh with the next frame; so a frame that was
+//! handed out has every byte in its place, and the signal's return costs no more than the rest of
+//! the frame it returns in. What cannot be seen from an interrupt, because none comes, is seen by
+//! [`Capture::next`], which watches the clock while it waits.
+//!
+//! Frames end with the fall of VSYNC, not with their last line: no window is cropped, since bytes
+//! that a window cuts off are bytes that nobody counts. 1.3 ms of blanking are left then, which is
+//! time enough to start afresh and still catch the next frame.
 //!
 //! Whoever reads a frame has the time of one more frame before the DMA comes back to its buffer.
 //! [`Frame::read`] says whether that was enough.
+//!
+//! # What it needs
+//! - DCMI, DMA2 stream 1 and both their interrupts, at one priority, bound to
+//!   [`InterruptHandler`] and [`DmaInterruptHandler`]. A line's interrupt must be served before the
+//!   next line ends (0.15 ms), or that line is not checked by itself; its frame still is.
+//! - An output section `.uninit` in memory that DMA2 reaches: SRAM1 or SRAM2, not the core-coupled
+//!   memory. Two frames, 48 KiB.
+//! - `embassy-time`, and a sensor with hardware sync whose geometry and times stand in `buffers`
+//!   and `timing`.
+//!
+//! # Cancelling
+//! A dropped [`Capture::next`] loses nothing: frames and faults wait for the next call, and a frame
+//! that a newer one overtakes is counted as [missed](Frame::missed). A dropped [`Capture`] stops
+//! interface, DMA and interrupts: no byte moves afterwards.
 
 mod buffers;
+mod fault;
 mod hardware;
 mod interrupt;
+mod port;
+mod timing;
+mod watch;
 
 use core::future::poll_fn;
 use core::task::Poll;
 
-use crate::board::CameraPort;
-use crate::counters::COUNTERS;
-use buffers::buffer_of;
-pub use interrupt::InterruptHandler;
-use interrupt::STATE;
+use embassy_time::{Instant, with_deadline};
 
-/// A running capture. Its port is its own for good.
+use buffers::{FRAME_WORDS, buffer_of};
+pub use fault::Fault;
+use interrupt::STATE;
+pub use interrupt::{DmaInterruptHandler, InterruptHandler};
+pub use port::{Port, pin};
+use watch::Watch;
+
+/// A running capture; there is one.
 pub struct Capture {
-    _port: CameraPort,
+    _port: Port,
+    watch: Watch,
     /// Number of the frame handed out last.
     last: u32,
 }
 
 impl Capture {
-    /// Starts to capture with the next frame the sensor sends.
-    pub fn start(port: CameraPort) -> Self {
+    /// Starts to capture with the next frame the sensor sends. Silence is no fault before
+    /// [`expect_signal`](Self::expect_signal).
+    pub fn start(port: Port) -> Self {
         interrupt::enable();
         let mut capture = Self {
             _port: port,
+            watch: Watch::new(),
             last: 0,
         };
         capture.restart();
         capture
     }
 
-    /// The next whole frame, as soon as its last byte is in memory; the newest where several went
-    /// by, and the others are counted as missed. Waits as long as the sensor is silent: give it a
-    /// time-out. Dropping the future loses nothing.
-    pub async fn next(&mut self) -> Frame {
+    /// From `at` on the sensor is expected to send, and its silence is a fault.
+    pub fn expect_signal(&mut self, at: Instant) {
+        self.watch.expect_signal(at);
+    }
+
+    /// The sensor is being reset: its silence is no fault from now on.
+    pub fn expect_silence(&mut self) {
+        self.watch.expect_silence();
+    }
+
+    /// What comes next: a whole frame as soon as its last byte is in memory and it is known to be
+    /// its last, or the name of what became of it. While a signal is
+    /// [expected](Self::expect_signal) the wait ends, with the longest when every frame is lost in
+    /// silence: with [`Fault::NoSignal`], after which a signal must be expected anew.
+    ///
+    /// A frame is the newest; where several went by, the others are [missed](Frame::missed).
+    ///
+    /// # Errors
+    /// The fault. The capture has already started afresh where it had to.
+    pub async fn next(&mut self) -> Result<Frame, Fault> {
+        loop {
+            let Some(look) = self.watch.next_look() else {
+                return self.event().await;
+            };
+            if let Ok(event) = with_deadline(look, self.event()).await {
+                return event;
+            }
+            if let Some(fault) = self.watch.look(Instant::now()) {
+                if fault == Fault::NoSignal {
+                    // What has come of a frame does not belong to what is to come.
+                    self.restart();
+                }
+                return Err(fault);
+            }
+        }
+    }
+
+    /// What the interrupts have to tell.
+    async fn event(&mut self) -> Result<Frame, Fault> {
         poll_fn(|context| {
             STATE.waker.register(context.waker());
+            if let Some(fault) = STATE.take_fault() {
+                return Poll::Ready(Err(fault));
+            }
             match STATE.progress() {
                 (number, _) if number == self.last => Poll::Pending,
-                (number, restarts) => Poll::Ready(self.hand_out(number, restarts)),
+                (number, restarts) => Poll::Ready(Ok(self.hand_out(number, restarts))),
             }
         })
         .await
     }
 
     fn hand_out(&mut self, number: u32, restarts: u32) -> Frame {
-        let skipped = number.wrapping_sub(self.last).wrapping_sub(1);
-        COUNTERS.frames_missed.count_many(skipped);
+        let missed = number.wrapping_sub(self.last).wrapping_sub(1);
         self.last = number;
-        Frame { number, restarts }
+        Frame {
+            number,
+            restarts,
+            missed,
+        }
     }
 
-    /// Drops a capture that may be under way and starts with the next frame the sensor sends.
+    /// Drops a frame that may be under way and starts with the next one the sensor sends.
     pub fn restart(&mut self) {
         critical_section::with(|_| interrupt::restart());
+    }
+}
+
+impl Drop for Capture {
+    fn drop(&mut self) {
+        interrupt::disable();
+        hardware::stop();
     }
 }
 
@@ -81,12 +180,18 @@ pub enum Integrity {
 pub struct Frame {
     number: u32,
     restarts: u32,
+    missed: u32,
 }
 
 impl Frame {
     /// Frames captured since boot, this one included.
     pub fn number(&self) -> u32 {
         self.number
+    }
+
+    /// Whole frames between this one and the one handed out before it.
+    pub fn missed(&self) -> u32 {
+        self.missed
     }
 
     /// Whether no later frame is complete yet.
@@ -108,15 +213,16 @@ impl Frame {
     fn integrity(&self) -> Integrity {
         critical_section::with(|_| {
             let (newest, restarts) = STATE.progress();
+            let stored = hardware::words_stored();
             let intact = match newest.wrapping_sub(self.number) {
-                // The DMA fills the other buffer.
-                0 => true,
+                // The DMA fills the other buffer, unless its frame does not end there.
+                0 => stored <= FRAME_WORDS,
                 // This buffer is next: it is whole as long as the next frame has not begun, and
                 // no beginning of it was thrown away.
-                1 => restarts == self.restarts && !hardware::frame_has_begun(),
+                1 => restarts == self.restarts && stored == 0,
                 _ => false,
             };
-            if intact {
+            if intact && !STATE.is_spoilt(self.number) {
                 Integrity::Intact
             } else {
                 Integrity::Torn

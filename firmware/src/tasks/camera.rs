@@ -1,46 +1,67 @@
 //! Frames from the capture to vision.
 
-use embassy_time::{Duration, with_timeout};
+use embassy_futures::select::{Either, select};
+use embassy_time::{Duration, Instant, TimeoutError, with_timeout};
 
-use crate::capture::{Capture, Frame};
-use crate::check_in::{Member, check_in};
+use crate::capture::{Capture, Fault, Frame};
+use crate::check_in::{self, Member, check_in};
 use crate::counters::COUNTERS;
+use crate::log;
 use crate::wires::{EVENTS, Event, SENSOR_SILENT, SENSOR_STARTED};
 
-/// Five frame times at 25.6 frames per second: nothing in a healthy sensor takes as long.
-const FRAME_TIMEOUT: Duration = Duration::from_millis(200);
+/// From the end of the sensor's set-up to its first line: the frame that is passing then is not put
+/// out. Two frames.
+const FIRST_LINE: Duration = Duration::from_millis(80);
 
-/// Time-outs in a row after which the sensor, and not the capture, is to be started again.
-const SILENCES_TO_RESET: u32 = 5;
+/// No whole frame for so long, whatever the reason: the sensor is set up again. It may have lost a
+/// register that shapes its frames. A sensor that has just been set up needs 160 ms.
+const FRAMELESS: Duration = Duration::from_millis(250);
 
-/// Passes every frame on. It is not the deadline's keeper: the capture goes on by itself. Where no
-/// frame comes, the capture is started again, and after a second of silence the sensor; a camera
-/// that stays away is counted, and no reason to stop answering the autopilot.
+/// Frames that may have been exposed while the clock stood, after the one it stood in.
+const FRAMES_AFTER_STOP: u8 = 1;
+
+/// Passes every frame on. It is not the deadline's keeper: the capture goes on by itself, and starts
+/// afresh by itself. A camera that stays away is counted, and no reason to stop answering the
+/// autopilot.
 #[embassy_executor::task]
 pub async fn camera(mut capture: Capture) {
-    let mut silences = 0;
+    let mut log = log::CaptureFaults::new();
     let mut settling = 0;
+    // When the sensor last did what it should; none while it is being set up.
+    let mut healthy: Option<Instant> = None;
     loop {
         check_in(Member::Camera);
-        match with_timeout(FRAME_TIMEOUT, capture.next()).await {
-            Ok(frame) => {
-                silences = 0;
-                settling = SENSOR_STARTED.try_take().unwrap_or(settling);
+        let event = with_timeout(check_in::PERIOD, capture.next());
+        match select(SENSOR_STARTED.wait(), event).await {
+            Either::First(settling_frames) => {
+                settling = settling_frames;
+                healthy = Some(Instant::now());
+                capture.restart();
+                capture.expect_signal(Instant::now() + FIRST_LINE);
+            }
+            Either::Second(Ok(Ok(frame))) => {
+                healthy = healthy.map(|_| Instant::now());
+                COUNTERS.frames_missed.count_many(frame.missed());
                 if settling == 0 {
                     pass_on(frame);
                 } else {
                     settling -= 1;
                 }
             }
-            Err(_) => {
-                COUNTERS.camera_silent.count();
-                capture.restart();
-                silences += 1;
-                if silences >= SILENCES_TO_RESET {
-                    silences = 0;
+            Either::Second(Ok(Err(fault))) => {
+                COUNTERS.capture(fault).count();
+                log.tell(fault);
+                if fault == Fault::StoppedClock {
+                    settling = settling.max(FRAMES_AFTER_STOP);
+                }
+                let frameless = healthy.is_some_and(|last| last.elapsed() >= FRAMELESS);
+                if frameless || fault == Fault::NoSignal {
+                    healthy = None;
+                    capture.expect_silence();
                     SENSOR_SILENT.signal(());
                 }
             }
+            Either::Second(Err(TimeoutError)) => {}
         }
     }
 }

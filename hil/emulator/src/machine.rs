@@ -200,6 +200,21 @@ impl<W: Wiring> Machine<W> {
         self.soc.dcmi_counters()
     }
 
+    /// A bus error, now, at DMA stream `stream` (0..=7) of controller `controller` (1 or 2): the
+    /// stream stops with its transfer-error flag (RM0090 §10.3.18). One that is off feels nothing.
+    /// The firmware notices when the machine runs on.
+    pub fn fail_dma(&mut self, controller: u8, stream: u8) {
+        self.soc.fail_dma(controller, stream);
+    }
+
+    /// Takes the bus away from DMA controller `controller` (1 or 2) as of now, or gives it back: a
+    /// higher master, or a memory that does not answer. Peripherals wait, or overrun.
+    pub fn stall_dma(&mut self, controller: u8, stalled: bool) {
+        let now = self.core.cycles();
+        self.soc
+            .stall_dma(&mut self.memory, now, controller, stalled);
+    }
+
     /// From now on records every call of the function in flash at `address`.
     pub fn trace_calls(&mut self, address: u32) {
         self.core.trace_calls(address);

@@ -51,6 +51,10 @@ fn understood(level: &'static str, text: String) -> FirmwareLog {
         FirmwareLog::Frame(frame)
     } else if let Some((message, why)) = link_drop(&text) {
         FirmwareLog::LinkDrop { message, why }
+    } else if let Some(name) = text.strip_prefix("capture fault ") {
+        FirmwareLog::CaptureFault {
+            name: name.to_owned(),
+        }
     } else {
         FirmwareLog::Line { level, text }
     }
@@ -107,6 +111,17 @@ mod tests {
             None
         );
         assert_eq!(frame("state cycles 17"), None);
+    }
+
+    #[test]
+    fn a_fault_of_the_capture_is_told_with_its_name() {
+        let fault = FirmwareLog::CaptureFault {
+            name: "short line".to_owned(),
+        };
+        assert_eq!(
+            understood("warn", "capture fault short line".to_owned()),
+            fault
+        );
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! camera's timing kept so that it sees what the emulated board sees, in the same order.
 
 use fake_sensors::camera::Pose;
+use fake_sensors::camera::tcm8230::Edge;
 use link::{Event, Frame, Parser, Refused};
 use nav::{LensCalibration, RecordError};
 use pilot::{Outbox, Pilot};
@@ -101,9 +102,9 @@ impl Native {
             .next_edge()
             .filter(|due_ns| *due_ns < until_ns)
         {
-            let sent = self.camera.frames_sent();
-            self.camera.take_edge(due_ns);
-            if self.camera.frames_sent() > sent {
+            let edge = self.camera.take_edge(due_ns);
+            // The firmware waits for the end of the vertical sync, and so does this.
+            if edge == Some(Edge::FrameEnd) && self.camera.frames_sent() > self.frames_processed {
                 self.process_frame(due_ns);
             }
         }

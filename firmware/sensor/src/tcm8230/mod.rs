@@ -32,9 +32,10 @@ const MAX_LINES: u16 = 525;
 /// the start of n shows in full on the second frame after the write. The data sheet is silent.
 const LATENCY_FRAMES: u8 = 2;
 
-/// The first frame after a change of format is masked black (D_MASK), and the exposure written
-/// before it needs [`latency_frames`](ImageSensor::latency_frames).
-pub const SETTLING_FRAMES: u8 = 1 + LATENCY_FRAMES;
+/// The first frame after the output came on is masked black (D_MASK = 1), and latches at its start
+/// the exposure that was written before it. By [`latency_frames`](ImageSensor::latency_frames)
+/// the second shows that exposure in full; it is given up as well, for the data sheet does not say.
+pub const SETTLING_FRAMES: u8 = LATENCY_FRAMES;
 
 /// Tries of one transfer before its error counts. A sensor that is between two states may refuse
 /// one; a sensor that is absent refuses all, soon.

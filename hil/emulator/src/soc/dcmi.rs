@@ -132,11 +132,22 @@ impl Dcmi {
             self.counters.frames_started += 1;
         }
         match signal {
+            CameraSignal::FrameStart if !self.inverted() => {
+                self.fall_before_rise(memory, dma);
+                self.frame_start();
+            }
             // With the wrong VSPOL frames begin where they end: all they hold is blanking.
-            CameraSignal::FrameStart if !self.inverted() => self.frame_start(),
             CameraSignal::FrameEnd if self.inverted() => self.frame_start(),
             CameraSignal::Line(bytes) => self.line(bytes, memory, dma),
             _ => self.frame_end(memory, dma),
+        }
+    }
+
+    /// VSYNC cannot rise again without having fallen: a camera that broke its frame off, or was
+    /// taken away in the middle of one, let it fall while nobody looked.
+    fn fall_before_rise(&mut self, memory: &mut Memory, dma: &mut Dma) {
+        if self.frame != Frame::Blanking {
+            self.frame_end(memory, dma);
         }
     }
 
@@ -157,13 +168,14 @@ impl Dcmi {
         }
     }
 
+    /// The flag rises even if the line is not valid (RM0090 §15.8.3).
     fn line(&mut self, bytes: &[u8], memory: &mut Memory, dma: &mut Dma) {
-        if self.cr & ENABLE == 0 || self.frame == Frame::Blanking {
+        if self.cr & ENABLE == 0 {
             return;
         }
+        self.ris |= LINE;
         let number = self.line;
         self.line += 1;
-        self.ris |= LINE;
         if self.frame != Frame::Capturing {
             return;
         }

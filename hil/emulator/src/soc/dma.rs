@@ -21,6 +21,8 @@ const FLAG_SHIFT: [u32; 4] = [0, 6, 16, 22];
 #[derive(Clone, Debug)]
 pub struct Dma {
     streams: [[Stream; 8]; 2],
+    /// The bus that a controller waits for is taken.
+    stalled: [bool; 2],
 }
 
 impl Dma {
@@ -28,10 +30,25 @@ impl Dma {
     pub fn new() -> Self {
         Self {
             streams: [[Stream::RESET; 8]; 2],
+            stalled: [false; 2],
         }
     }
 
-    /// Resets controller 1 or 2.
+    /// The bus refuses the transfer that stream `stream` of controller 1 or 2 has under way. A
+    /// stream that is off has none.
+    pub fn fail(&mut self, controller: u8, stream: u8) {
+        if let Some(stream) = self.streams[index(controller)].get_mut(usize::from(stream)) {
+            stream.refuse();
+        }
+    }
+
+    /// Takes the bus away from controller 1 or 2, or gives it back. Requests wait; who gives the
+    /// bus back lets their peripherals serve them.
+    pub fn stall(&mut self, controller: u8, stalled: bool) {
+        self.stalled[index(controller)] = stalled;
+    }
+
+    /// Resets controller 1 or 2; the bus is none of its business.
     pub fn reset(&mut self, controller: u8) {
         self.streams[index(controller)] = [Stream::RESET; 8];
     }
@@ -55,7 +72,9 @@ impl Dma {
 
     fn serving(&mut self, request: Request) -> Option<&mut Stream> {
         let slot = request.slots().iter().find(|slot| {
-            self.streams[index(slot.controller)][usize::from(slot.stream)].serves(slot.channel)
+            let controller = index(slot.controller);
+            !self.stalled[controller]
+                && self.streams[controller][usize::from(slot.stream)].serves(slot.channel)
         })?;
         Some(&mut self.streams[index(slot.controller)][usize::from(slot.stream)])
     }

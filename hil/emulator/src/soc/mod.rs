@@ -191,6 +191,21 @@ impl<W: Wiring> Soc<W> {
         usart.map(Usart::counters).unwrap_or_default()
     }
 
+    /// The bus refuses the transfer of a DMA stream.
+    pub fn fail_dma(&mut self, controller: u8, stream: u8) {
+        self.next = None;
+        self.dma.fail(controller, stream);
+    }
+
+    /// The bus is taken away from a DMA controller, or given back at `now`.
+    pub fn stall_dma(&mut self, memory: &mut Memory, now: Cycle, controller: u8, stalled: bool) {
+        self.next = None;
+        self.dma.stall(controller, stalled);
+        if !stalled {
+            self.serve_requests(memory, now);
+        }
+    }
+
     /// The next cycle at which a block does something by itself.
     pub fn next_event(&mut self) -> Cycle {
         if let Some(next) = self.next {

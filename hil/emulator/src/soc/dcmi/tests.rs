@@ -219,3 +219,55 @@ fn the_processor_may_read_the_fifo_itself() {
     assert_eq!(bench.dcmi.read(DR).unwrap(), 0x0807_0605);
     assert_eq!(bench.dcmi.read(SR).unwrap() >> 2 & 1, 0);
 }
+
+#[test]
+fn a_line_between_frames_raises_its_flag_and_is_not_captured() {
+    let mut bench = Bench::new(CONTINUOUS, 8, 0);
+    bench.signal(CameraSignal::Line(&[1; 8]));
+    assert_eq!(bench.flags(), LINE);
+    assert_eq!(bench.memory.read32(SRAM), Some(0));
+}
+
+#[test]
+fn a_frame_that_was_broken_off_ends_before_the_next_begins() {
+    let mut bench = Bench::new(CONTINUOUS, 16, 0);
+    bench.signal(CameraSignal::FrameStart);
+    bench.signal(CameraSignal::Line(&[9; 8]));
+    assert_eq!(bench.flags(), LINE);
+    bench.signal(CameraSignal::FrameStart);
+    assert_eq!(bench.flags(), FRAME | VSYNC);
+    for _ in 0..4 {
+        bench.signal(CameraSignal::Line(&[1; 8]));
+    }
+    bench.signal(CameraSignal::FrameEnd);
+    assert_eq!(bench.flags(), FRAME | VSYNC | LINE);
+}
+
+#[test]
+fn a_stalled_bus_starves_the_fifo_until_it_overruns() {
+    let mut bench = Bench::new(CONTINUOUS, 8, 0);
+    bench.signal(CameraSignal::FrameStart);
+    bench.signal(CameraSignal::Line(&[1; 8]));
+    bench.dma.stall(2, true);
+    bench.signal(CameraSignal::Line(&[2; 8]));
+    bench.signal(CameraSignal::Line(&[3; 8]));
+    assert_eq!(bench.flags(), LINE);
+    bench.signal(CameraSignal::Line(&[4; 8]));
+    assert_eq!(bench.flags(), LINE | OVERRUN);
+    assert_eq!(bench.memory.read32(SRAM + 8), Some(0));
+}
+
+#[test]
+fn a_bus_that_stalls_for_less_than_four_words_loses_nothing() {
+    let mut bench = Bench::new(CONTINUOUS, 8, 0);
+    bench.signal(CameraSignal::FrameStart);
+    bench.dma.stall(2, true);
+    bench.signal(CameraSignal::Line(&[2; 8]));
+    bench.signal(CameraSignal::Line(&[3; 8]));
+    assert_eq!(bench.memory.read32(SRAM), Some(0));
+    bench.dma.stall(2, false);
+    bench.dcmi.serve(&mut bench.memory, &mut bench.dma);
+    let words = [SRAM, SRAM + 12].map(|address| bench.memory.read32(address).unwrap());
+    assert_eq!(words, [0x0202_0202, 0x0303_0303]);
+    assert_eq!(bench.flags(), LINE);
+}

@@ -96,6 +96,13 @@ impl Stream {
         item
     }
 
+    /// The bus refuses the transfer that is under way, if any is.
+    pub fn refuse(&mut self) {
+        if self.enabled() {
+            self.fail();
+        }
+    }
+
     /// The stream's flags in ISR.
     pub fn flags(&self) -> u32 {
         self.flags

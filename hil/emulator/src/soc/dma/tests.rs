@@ -159,3 +159,35 @@ fn settings_of_a_running_stream_are_locked() {
     assert_eq!(dma.read(2, S1 + 4).unwrap(), 8);
     assert_eq!(dma.read(2, S1).unwrap(), DCMI_STREAM | ENABLE | 1 << 4);
 }
+
+#[test]
+fn a_refused_transfer_stops_the_stream_and_keeps_the_count() {
+    let (mut dma, mut memory) = camera_stream(8, DOUBLE_BUFFER | 1 << 2);
+    dma.store(&mut memory, Request::Dcmi, 1);
+    dma.fail(2, 1);
+    assert_eq!(dma.read(2, S1).unwrap() & ENABLE, 0);
+    assert_eq!(dma.read(2, S1 + 4).unwrap(), 7);
+    assert_eq!(dma.read(2, 0).unwrap(), TRANSFER_ERROR << 6);
+    let mut lines = Lines::default();
+    dma.drive(&mut lines);
+    assert!(lines.is_high(57));
+    assert!(!dma.store(&mut memory, Request::Dcmi, 2));
+}
+
+#[test]
+fn a_stream_that_is_off_has_no_transfer_to_refuse() {
+    let mut dma = Dma::new();
+    dma.fail(2, 1);
+    dma.fail(2, 8);
+    assert_eq!(dma.read(2, 0).unwrap(), 0);
+}
+
+#[test]
+fn a_stalled_controller_serves_nobody_and_forgets_nothing() {
+    let (mut dma, mut memory) = camera_stream(8, 0);
+    dma.stall(2, true);
+    assert!(!dma.store(&mut memory, Request::Dcmi, 1));
+    assert_eq!(dma.read(2, S1 + 4).unwrap(), 8);
+    dma.stall(2, false);
+    assert!(dma.store(&mut memory, Request::Dcmi, 1));
+}
