@@ -31,9 +31,4 @@ impl Horizon {
     pub const fn residual_rad(&self) -> f32 {
         self.residual_rad
     }
-
-    /// The mean luma: what the autoexposure regulates.
-    pub fn mean(&self) -> f32 {
-        self.luma.iter().sum::<f32>() * (1.0 / BEARINGS as f32)
-    }
 }

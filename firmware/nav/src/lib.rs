@@ -35,7 +35,7 @@ pub mod snapshot;
 pub mod spectrum;
 
 pub use calibration::{BearingDirection, CalibrationError, LensCalibration, RecordError};
-pub use exposure::{Exposure, ExposureController, ExposureParameters};
+pub use exposure::{Exposure, ExposureController, ExposureParameters, LumaHistogram};
 pub use homing::{HomingParameters, HomingVector, NoVectorReason};
 pub use horizon::Horizon;
 pub use navigator::{

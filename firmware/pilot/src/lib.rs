@@ -4,8 +4,8 @@
 //! flight on both, bit for bit. It has no clock and no peripherals: time comes as an argument.
 //!
 //! ```text
-//! frame   -> horizon -> exposure
-//!               |-----> spectrum ---.
+//! frame   -> horizon band -> exposure
+//!      '---> horizon -> spectrum ---.
 //! message -> command / pose --------+-> navigator -> outbox
 //!                        |               |
 //!                        '-> continuity -'  (which coordinates the autopilot counts in)
@@ -84,7 +84,7 @@ impl Default for Parameters {
 /// What a frame told the pilot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameReport {
-    /// Mean luma of the horizon, 0..=255.
+    /// Mean luma of the horizon band, 0..=255.
     pub mean_luma: f32,
     /// To be written to the sensor, if it is to change.
     pub exposure: Option<Exposure>,
@@ -124,12 +124,11 @@ impl Pilot {
 
     /// Looks at a frame. Once per frame; takes effect with the next STATE.
     pub fn on_frame(&mut self, frame: &Frame) -> FrameReport {
-        let horizon = self.map.horizon(frame, self.heading);
-        let mean_luma = horizon.mean();
+        let (horizon, mean_luma) = self.map.horizon_and_band(frame, self.heading);
         self.view = Some(Spectrum::of(&horizon));
         FrameReport {
             mean_luma,
-            exposure: self.exposure.update(mean_luma),
+            exposure: self.exposure.update(mean_luma, || self.map.band(frame)),
         }
     }
 

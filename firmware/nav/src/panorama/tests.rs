@@ -112,12 +112,82 @@ fn the_first_row_looks_up() {
     }
 }
 
+/// A frame of one luma, but for what looks so many degrees up, where the ring spans 90.
+fn frame_with(
+    lens: &LensCalibration,
+    luma: u8,
+    from_deg: f32,
+    to_deg: f32,
+    other: u8,
+) -> Box<Frame> {
+    let mut frame = Box::new([luma; FRAME_BYTES]);
+    for pixel in 0..FRAME_WIDTH * FRAME_HEIGHT {
+        let x = (pixel % FRAME_WIDTH) as f32 + 0.5 - lens.centre_px.0;
+        let y = (pixel / FRAME_WIDTH) as f32 + 0.5 - lens.centre_px.1;
+        let outwards = libm::hypotf(x, y) - lens.horizon_radius_px;
+        let up = if lens.inner_is_up {
+            -outwards
+        } else {
+            outwards
+        };
+        let elevation = up * 90.0 / (lens.outer_radius_px - lens.inner_radius_px);
+        if (from_deg..to_deg).contains(&elevation) {
+            frame[2 * pixel + 1] = other;
+        }
+    }
+    frame
+}
+
+#[test]
+fn the_band_sees_17_degrees_up_and_down_and_neither_lamps_nor_floor_nor_fixture_beyond() {
+    for lens in lenses() {
+        let map = PanoramaMap::new(&lens, &LAYOUT).unwrap();
+        let band = |from_deg, to_deg| {
+            let frame = frame_with(&lens, 70, from_deg, to_deg, 255);
+            let (_, mean) = map.horizon_and_band(&frame[..], 1.0);
+            (mean, map.band(&frame[..]))
+        };
+        let mut uniform = LumaHistogram::new();
+        (0..BAND_ROWS * BEARINGS).for_each(|_| uniform.add(70));
+        // A pixel is 3.75 degrees high: what begins one farther out must not be seen.
+        for (from_deg, to_deg) in [(21.0, 999.0), (-999.0, -21.0)] {
+            assert_eq!(band(from_deg, to_deg), (70.0, uniform.clone()));
+        }
+        assert_eq!(band(-22.0, 22.0).0, 255.0);
+        for (from_deg, to_deg) in [(7.0, 17.0), (-17.0, -7.0), (-5.0, 5.0)] {
+            assert!(band(from_deg, to_deg).0 > 100.0);
+        }
+    }
+}
+
+#[test]
+fn a_horizon_that_is_not_in_the_middle_of_the_ring_takes_the_band_with_it() {
+    for (horizon_radius_px, first_row) in [(30.0, 5), (27.0, 3), (33.0, 7), (18.0, 0), (42.0, 10)] {
+        let lens = LensCalibration {
+            horizon_radius_px,
+            ..LensCalibration::DEFAULT
+        };
+        let map = PanoramaMap::new(&lens, &LAYOUT).unwrap();
+        for row in 0..RADII {
+            // Row r is the ring from 18 + 1.5 r to 18 + 1.5 (r + 1) pixels: light it alone.
+            let mut frame = Box::new([0; FRAME_BYTES]);
+            for column in &map.luma_index {
+                frame[usize::from(column[(row + RADII - map.band_start) % RADII])] = 160;
+            }
+            let lit = map.unwrap(&frame[..])[row].iter().all(|luma| *luma == 160);
+            let seen = map.horizon_and_band(&frame[..], 0.0).1 > 20.0;
+            assert!(lit);
+            assert_eq!(seen, (first_row..first_row + BAND_ROWS).contains(&row));
+        }
+    }
+}
+
 #[test]
 fn a_heading_that_is_not_finite_does_no_harm() {
     let map = PanoramaMap::new(&LensCalibration::DEFAULT, &LAYOUT).unwrap();
     for heading in [f32::NAN, f32::INFINITY, f32::MAX, f32::MIN] {
         let horizon = map.horizon(&[7; FRAME_BYTES], heading);
-        assert_eq!(horizon.mean(), 7.0);
+        assert_eq!(horizon.luma(), &[7.0; BEARINGS]);
     }
 }
 
