@@ -4,12 +4,13 @@ use defmt_decoder::Table;
 use emulator::image::{Image, ImageError};
 use emulator::machine::Machine;
 use emulator::time::Nanos;
+use emulator::wiring::Wiring;
 use fake_sensors::camera::Pose;
 use sensor::tcm8230::SETTLING_FRAMES;
 
 use super::camera::Camera;
-use super::firmware_log::{self, LogDecoder};
-use super::rtt::UpChannel;
+use super::firmware_log;
+use super::probe::Probe;
 use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog};
 use crate::scenario::LensPage;
 
@@ -56,13 +57,23 @@ impl Firmware {
 
     /// Where the image looks for the lens record.
     pub fn lens_page_address(&self) -> Result<u32, BoardError> {
-        let symbol = self.image.symbol(LENS_PAGE);
-        Ok(symbol.ok_or(BoardError::NoSymbol(LENS_PAGE))?.address)
+        self.address(LENS_PAGE)
     }
 
-    /// A chip with all of it, switched on.
-    fn machine(&self, camera: Camera) -> Result<Machine<Camera>, BoardError> {
-        let mut machine = Machine::new(&self.image, CRYSTAL_HZ, camera)?;
+    /// Where a function or a static of the image is.
+    pub fn address(&self, symbol: &'static str) -> Result<u32, BoardError> {
+        let found = self.image.symbol(symbol);
+        Ok(found.ok_or(BoardError::NoSymbol(symbol))?.address)
+    }
+
+    /// A probe for the image's log.
+    pub fn probe(&self) -> Result<Probe<'_>, BoardError> {
+        Probe::new(&self.image, &self.table)
+    }
+
+    /// A chip with all of it, on a board with this wiring, switched on.
+    pub fn machine<W: Wiring>(&self, wiring: W) -> Result<Machine<W>, BoardError> {
+        let mut machine = Machine::new(&self.image, CRYSTAL_HZ, wiring)?;
         if let Some(lens) = &self.lens {
             let (address, bytes) = (self.lens_page_address()?, lens.bytes());
             let placed = machine.memory_mut().place(address, bytes);
@@ -88,10 +99,8 @@ impl Firmware {
 /// An STM32F407 with a camera, in flight.
 pub struct Emulated<'f> {
     machine: Machine<Camera>,
-    channel: UpChannel,
-    decoder: LogDecoder<'f>,
+    probe: Probe<'f>,
     log: Vec<FirmwareLog>,
-    bytes: Vec<u8>,
     traced_cycles: Vec<u32>,
     /// Frames in the log so far.
     frames_logged: usize,
@@ -106,20 +115,12 @@ impl<'f> Emulated<'f> {
     /// Switches a board on and waits until its camera sends; then the flight's time is zero, and
     /// stands where the native board's does: [`CAMERA_LEAD_NS`] after the start of the first frame.
     pub fn boot(firmware: &'f Firmware, camera: Camera) -> Result<Self, BoardError> {
-        let vision = firmware
-            .image
-            .symbol(VISION_FUNCTION)
-            .ok_or(BoardError::NoSymbol(VISION_FUNCTION))?
-            .address;
-        let channel =
-            UpChannel::of(&firmware.image).ok_or(BoardError::NoSymbol(UpChannel::SYMBOL))?;
+        let vision = firmware.address(VISION_FUNCTION)?;
         let mut machine = firmware.machine(camera)?;
         machine.trace_calls(vision);
         let mut board = Self {
-            channel,
-            decoder: LogDecoder::new(&firmware.table),
+            probe: firmware.probe()?,
             log: Vec::new(),
-            bytes: Vec::new(),
             traced_cycles: Vec::new(),
             frames_logged: 0,
             vision,
@@ -158,14 +159,8 @@ impl<'f> Emulated<'f> {
     }
 
     fn read_log(&mut self) -> Result<(), BoardError> {
-        self.bytes.clear();
-        self.channel
-            .drain(self.machine.memory_mut(), &mut self.bytes);
-        if self.bytes.is_empty() {
-            return Ok(());
-        }
         let known = self.log.len();
-        self.decoder.decode(&self.bytes, &mut self.log)?;
+        self.probe.read(&mut self.machine, &mut self.log)?;
         let is_frame = |record: &&FirmwareLog| matches!(record, FirmwareLog::Frame(_));
         self.frames_logged += self.log[known..].iter().filter(is_frame).count();
         Ok(())

@@ -5,7 +5,9 @@ pub mod camera;
 pub mod emulated;
 mod firmware_log;
 pub mod native;
+pub mod probe;
 mod rtt;
+pub mod sabotage;
 
 use fake_sensors::camera::Pose;
 

@@ -4,6 +4,7 @@
 //! does not hold). 2: it could not be done (wrong options, no compiler, a chip that stopped).
 
 mod autopilot;
+mod camera_faults;
 mod campaign;
 mod conditions;
 mod console;
@@ -62,6 +63,8 @@ enum Verb {
     LinkCheck(link_check::Arguments),
     /// Measures how far dead reckoning strays
     Drift(drift::Arguments),
+    /// Injects faults at the camera's wires and looks what becomes of the frames
+    CameraFaults(camera_faults::Arguments),
     /// Holds the filter against a recording of the firmware's own
     EkfReplay(ekf_replay::Arguments),
     /// Steps the set-point and looks at the answers
@@ -84,6 +87,7 @@ pub fn main() -> ExitCode {
         Verb::ImportCf(arguments) => import_cf::run(&arguments, &console),
         Verb::LinkCheck(arguments) => link_check::run(&arguments, &console),
         Verb::Drift(arguments) => drift::run(&arguments, &console),
+        Verb::CameraFaults(arguments) => camera_faults::run(&arguments, &console),
         Verb::EkfReplay(arguments) => ekf_replay::run(&arguments, &console),
         Verb::Steps(arguments) => steps::run(&arguments, &console),
     };
