@@ -5,7 +5,7 @@
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use fake_sensors::camera::{
-    AnnulusRenderer, Exposure, FRAME_BYTES, HEIGHT, ImageSensor, PanoramicLens, Pose,
+    Exposure, FRAME_BYTES, HEIGHT, Moment, PanoramicCamera, PanoramicLens, Pose,
 };
 use fake_sensors::world::{WORLD_NAMES, World};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -41,18 +41,23 @@ fn frame(bencher: Bencher<'_, '_>, name: &str) {
         return;
     };
     let lens = PanoramicLens::default();
-    let mut renderer = AnnulusRenderer::new(&lens);
-    let mut sensor = ImageSensor::new(&lens, 1);
-    let mut bytes = Box::new([0; FRAME_BYTES]);
+    let mut camera = PanoramicCamera::new(world, &lens, 1);
     let mut number = 0;
     bencher.counter(ItemsCount::new(1_u32)).bench_local(|| {
         let start_s = f64::from(number) * 0.039;
+        camera.begin_frame(number);
         for row in 0..HEIGHT {
             let time_s = start_s + READOUT_S * row as f64 / HEIGHT as f64;
-            renderer.render_rows(row..row + 1, &world, &pose(time_s), time_s);
+            let moment = Moment {
+                pose: pose(time_s),
+                time_s,
+            };
+            camera.light_row(row, &moment);
         }
-        sensor.form_image(renderer.finish(), EXPOSURE, number, &mut bytes);
+        for row in 0..HEIGHT {
+            camera.read_row(row, EXPOSURE);
+        }
         number += 1;
-        bytes[FRAME_BYTES / 2]
+        camera.frame()[FRAME_BYTES / 2]
     });
 }

@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::BufWriter;
 
 use fake_sensors::camera::{
-    Exposure, Frame, HEIGHT, PanoramicCamera, PanoramicLens, Pose, View, WIDTH,
+    Exposure, Frame, HEIGHT, Moment, PanoramicCamera, PanoramicLens, Pose, View, WIDTH,
 };
 use fake_sensors::world::{Aperture, World};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -49,12 +49,16 @@ fn pose([x, y, z]: [f32; 3], yaw_deg: f32) -> Pose {
     }
 }
 
+fn still(pose: Pose) -> Moment {
+    Moment { pose, time_s: 0.0 }
+}
+
 fn look(name: &str, seed: u64, pose: &Pose, lines: u16, prefix: &str) -> Result<(), Failure> {
     let world = World::open(name, seed)?;
     let lens = PanoramicLens::default();
     let fine = unrolled_world(&world, &lens, pose, lines);
     let mut camera = PanoramicCamera::new(world, &lens, 1);
-    let frame = camera.expose(pose, Exposure { lines, gain: 1.0 }, 0);
+    let frame = camera.expose(&still(*pose), Exposure { lines, gain: 1.0 }, 0);
     let raw: Vec<u8> = frame.iter().skip(1).step_by(2).copied().collect();
     save(&format!("{prefix}-raw.png"), WIDTH, HEIGHT, &raw)?;
     let coarse = unrolled_frame(&lens, frame);
@@ -81,7 +85,7 @@ fn sheet(seed: u64, file: &str) -> Result<(), Failure> {
             lines: USUAL_LINES,
             gain: 1.0,
         };
-        let coarse = unrolled_frame(&lens, camera.expose(&pose, exposure, 0));
+        let coarse = unrolled_frame(&lens, camera.expose(&still(pose), exposure, 0));
         println!("{name}: mean luma {:.1}", mean(&coarse));
         picture.extend(coarse);
     }

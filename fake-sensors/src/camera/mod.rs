@@ -6,7 +6,7 @@ mod sensor;
 pub mod tcm8230;
 
 pub use lens::{Direction, PanoramicLens, View};
-pub use render::{AnnulusRenderer, Pose};
+pub use render::{AnnulusRenderer, Moment, Pose};
 pub use sensor::{Exposure, ImageSensor, ImageTuning, MAX_EXPOSURE_LINES};
 
 use crate::world::World;
@@ -23,10 +23,14 @@ pub const FRAME_BYTES: usize = LINE_BYTES * HEIGHT;
 /// A frame in bus order: lines top to bottom, each U0 Y0 V0 Y1 U2 Y2 ...
 pub type Frame = [u8; FRAME_BYTES];
 
+/// A line in bus order.
+pub type Line = [u8; LINE_BYTES];
+
 /// A camera with a panoramic lens, looking at a world.
 ///
-/// The bytes of a frame depend on nothing but world, lens, seed, tuning and the arguments of
-/// [`expose`](Self::expose): every backend that asks for the same frame gets the same bytes.
+/// The shutter rolls: a frame is [begun](Self::begin_frame), and each row [lit](Self::light_row) at a
+/// moment of its own and then [read out](Self::read_row). Its bytes depend on nothing but world, lens,
+/// seed, tuning and the arguments of those three: every backend that asks for the same frame gets the same bytes.
 #[derive(Clone, Debug)]
 pub struct PanoramicCamera {
     world: World,
@@ -64,12 +68,35 @@ impl PanoramicCamera {
         self.sensor.set_tuning(tuning);
     }
 
-    /// Takes frame `frame_number` from `pose` (of the optic, whose centre is the camera's).
-    pub fn expose(&mut self, pose: &Pose, exposure: Exposure, frame_number: u32) -> &Frame {
-        let radiance = self.renderer.render(&self.world, pose, 0.0);
-        self.sensor
-            .form_image(radiance, exposure, frame_number, &mut self.frame);
+    /// Takes frame `frame_number` all at one moment (the pose is that of the optic, whose centre is
+    /// the camera's).
+    pub fn expose(&mut self, moment: &Moment, exposure: Exposure, frame_number: u32) -> &Frame {
+        self.begin_frame(frame_number);
+        self.renderer.render_rows(0..HEIGHT, &self.world, moment);
+        for row in 0..HEIGHT {
+            self.read_row(row, exposure);
+        }
         &self.frame
+    }
+
+    /// Begins frame `frame_number`.
+    pub fn begin_frame(&mut self, frame_number: u32) {
+        self.sensor.begin_frame(frame_number);
+    }
+
+    /// Lets the light of `moment` fall on row `row` (below [`HEIGHT`]).
+    pub fn light_row(&mut self, row: usize, moment: &Moment) {
+        self.renderer.render_rows(row..row + 1, &self.world, moment);
+    }
+
+    /// Reads row `row` (below [`HEIGHT`]) out. The optic blurs: the rows next to it must have their
+    /// light as well.
+    pub fn read_row(&mut self, row: usize, exposure: Exposure) -> &Line {
+        let (lines, _) = self.frame.as_chunks_mut::<LINE_BYTES>();
+        let line = &mut lines[row];
+        self.sensor
+            .form_row(row, self.renderer.row(row), exposure, line);
+        line
     }
 
     /// The frame that the sensor puts out while it masks its output.

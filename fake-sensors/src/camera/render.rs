@@ -19,6 +19,15 @@ const RIM_RADIANCE: f32 = 0.6;
 /// Radiance outside the rim: the inside of the holder.
 const HOLDER_RADIANCE: f32 = 0.02;
 
+/// What a row of the image is exposed at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Where the camera is.
+    pub pose: Pose,
+    /// Seconds of flight: what the world does by then.
+    pub time_s: f64,
+}
+
 /// Where the camera is and how it is turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -43,7 +52,8 @@ struct PixelRay {
 /// between walls that single rays leave jagged.
 ///
 /// A frame is [`render`](Self::render)ed whole, or, for a rolling shutter, row by row with
-/// [`render_rows`](Self::render_rows) and then [`finish`](Self::finish)ed.
+/// [`render_rows`](Self::render_rows), and each [`row`](Self::row) taken when it and its neighbours
+/// are there.
 #[derive(Clone, Debug)]
 pub struct AnnulusRenderer {
     /// Row by row.
@@ -51,7 +61,9 @@ pub struct AnnulusRenderer {
     /// The first ray of each row, and the number of rays.
     row_starts: Vec<usize>,
     sharp: Vec<f32>,
-    scratch: Vec<f32>,
+    /// Blurred along the rows.
+    streaked: Vec<f32>,
+    /// Blurred both ways.
     blurred: Vec<f32>,
 }
 
@@ -77,42 +89,63 @@ impl AnnulusRenderer {
             }
         }
         let row_start = |row| rays.partition_point(|ray| ray.index < row * WIDTH);
-        Self {
+        let mut renderer = Self {
             row_starts: (0..=HEIGHT).map(row_start).collect(),
             rays,
-            scratch: sharp.clone(),
+            streaked: sharp.clone(),
             blurred: sharp.clone(),
             sharp,
+        };
+        for row in 0..HEIGHT {
+            renderer.streak(row);
         }
+        renderer
     }
 
-    /// Radiance on each pixel, row by row ([`WIDTH`] x [`HEIGHT`]), all seen from `pose` at `time_s`;
-    /// 1 is white paper in the world's own light.
-    pub fn render(&mut self, world: &World, pose: &Pose, time_s: f64) -> &[f32] {
-        self.render_rows(0..HEIGHT, world, pose, time_s);
-        self.finish()
+    /// Radiance on each pixel, row by row ([`WIDTH`] x [`HEIGHT`]), all seen at one moment; 1 is white
+    /// paper in the world's own light.
+    pub fn render(&mut self, world: &World, moment: &Moment) -> &[f32] {
+        self.render_rows(0..HEIGHT, world, moment);
+        for row in 0..HEIGHT {
+            self.row(row);
+        }
+        &self.blurred
     }
 
-    /// Renders `rows` (as far as the image has them) as seen from `pose` at `time_s` (seconds of
-    /// flight): with a rolling shutter, each row has its own.
-    pub fn render_rows(&mut self, rows: Range<usize>, world: &World, pose: &Pose, time_s: f64) {
-        let [first, last] = [rows.start, rows.end].map(|row| self.row_starts[row.min(HEIGHT)]);
+    /// Renders `rows` (as far as the image has them) as seen at `moment`: with a rolling shutter, each
+    /// row has its own.
+    pub fn render_rows(&mut self, rows: Range<usize>, world: &World, moment: &Moment) {
+        let [start, end] = [rows.start, rows.end].map(|row| row.min(HEIGHT));
+        let [first, last] = [start, end].map(|row| self.row_starts[row]);
         if first >= last {
             return;
         }
-        let viewpoint = world.seen_from(pose.position_m, time_s);
-        let to_world = pose.attitude.to_rotation_matrix();
+        let viewpoint = world.seen_from(moment.pose.position_m, moment.time_s);
+        let to_world = moment.pose.attitude.to_rotation_matrix();
         for ray in &self.rays[first..last] {
             self.sharp[ray.index] = viewpoint.radiance(to_world * ray.direction, &ray.aperture);
         }
+        for row in start..end {
+            self.streak(row);
+        }
     }
 
-    /// Blurs the rows rendered last into a frame: radiance on each pixel, as from
-    /// [`render`](Self::render).
-    pub fn finish(&mut self) -> &[f32] {
-        blur_rows(&self.sharp, &mut self.scratch);
-        blur_columns(&self.scratch, &mut self.blurred);
-        &self.blurred
+    /// Radiance on each pixel of `row` (below [`HEIGHT`]), blurred with what was rendered last of it
+    /// and of the rows next to it.
+    pub fn row(&mut self, row: usize) -> &[f32] {
+        let line = row * WIDTH..(row + 1) * WIDTH;
+        if (1..HEIGHT - 1).contains(&row) {
+            let above = &self.streaked[line.start - WIDTH..line.start];
+            let here = &self.streaked[line.clone()];
+            let below = &self.streaked[line.end..line.end + WIDTH];
+            blur_columns(above, here, below, &mut self.blurred[line.clone()]);
+        }
+        &self.blurred[line]
+    }
+
+    fn streak(&mut self, row: usize) {
+        let line = row * WIDTH..(row + 1) * WIDTH;
+        blur_row(&self.sharp[line.clone()], &mut self.streaked[line]);
     }
 }
 
@@ -138,22 +171,16 @@ fn pixel_centre(index: usize) -> [f32; 2] {
     [(index % WIDTH) as f32 + 0.5, (index / WIDTH) as f32 + 0.5]
 }
 
-/// Binomial blur (1, 2, 1)/4 along each row: standard deviation 0.7 pixels.
-fn blur_rows(from: &[f32], to: &mut [f32]) {
-    for (source, target) in from.chunks_exact(WIDTH).zip(to.chunks_exact_mut(WIDTH)) {
-        for (blurred, triple) in target[1..].iter_mut().zip(source.windows(3)) {
-            *blurred = 0.25 * (triple[0] + triple[2]) + 0.5 * triple[1];
-        }
+/// Binomial blur (1, 2, 1)/4 along a row: standard deviation 0.7 pixels.
+fn blur_row(from: &[f32], to: &mut [f32]) {
+    for (blurred, triple) in to[1..].iter_mut().zip(from.windows(3)) {
+        *blurred = 0.25 * (triple[0] + triple[2]) + 0.5 * triple[1];
     }
 }
 
-/// The same along each column.
-fn blur_columns(from: &[f32], to: &mut [f32]) {
-    let interior = WIDTH..from.len() - WIDTH;
-    let above = from.iter();
-    let here = from[WIDTH..].iter();
-    let below = from[2 * WIDTH..].iter();
-    for (blurred, ((a, h), b)) in to[interior].iter_mut().zip(above.zip(here).zip(below)) {
+/// The same along the columns of three rows.
+fn blur_columns(above: &[f32], here: &[f32], below: &[f32], to: &mut [f32]) {
+    for (blurred, ((a, h), b)) in to.iter_mut().zip(above.iter().zip(here).zip(below)) {
         *blurred = 0.25 * (a + b) + 0.5 * h;
     }
 }

@@ -21,10 +21,13 @@ fn camera(seed: u64) -> PanoramicCamera {
     PanoramicCamera::new(world(), &PanoramicLens::default(), seed)
 }
 
-fn pose(yaw_rad: f32) -> Pose {
-    Pose {
-        position_m: Vector3::new(-1.1, 0.37, 0.5),
-        attitude: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw_rad),
+fn at(yaw_rad: f32) -> Moment {
+    Moment {
+        pose: Pose {
+            position_m: Vector3::new(-1.1, 0.37, 0.5),
+            attitude: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw_rad),
+        },
+        time_s: 0.0,
     }
 }
 
@@ -49,8 +52,8 @@ fn mean(values: &[f32]) -> f32 {
 #[test]
 fn a_quarter_turn_of_the_camera_turns_the_image_by_exactly_a_quarter() {
     let mut renderer = AnnulusRenderer::new(&PanoramicLens::default());
-    let ahead = renderer.render(&world(), &pose(0.0), 0.0).to_vec();
-    let turned = renderer.render(&world(), &pose(FRAC_PI_2), 0.0).to_vec();
+    let ahead = renderer.render(&world(), &at(0.0)).to_vec();
+    let turned = renderer.render(&world(), &at(FRAC_PI_2)).to_vec();
     let mut compared = 0;
     for (x, y) in (0..WIDTH * HEIGHT).map(|index| (index % WIDTH, index / WIDTH)) {
         if in_ring(x, y) {
@@ -75,7 +78,7 @@ fn a_landmark_appears_at_its_bearing_minus_the_heading() {
             elevation_rad: 0.2,
         };
         let [x, y] = lens.project(view).map(|coordinate| coordinate as usize);
-        renderer.render(&world, &pose(yaw_rad), 0.0)[y * WIDTH + x]
+        renderer.render(&world, &at(yaw_rad))[y * WIDTH + x]
     };
     let step = core::f32::consts::TAU / 24.0;
     let shift = 5.0 * step;
@@ -94,7 +97,7 @@ fn twice_the_shutter_or_the_gain_gives_twice_the_luma_above_black() {
     let mut camera = camera(1);
     let mut luma = |lines, gain| {
         let exposure = Exposure { lines, gain };
-        mean(&ring_luma(camera.expose(&pose(0.0), exposure, 0))) - 12.0
+        mean(&ring_luma(camera.expose(&at(0.0), exposure, 0))) - 12.0
     };
     let dim = luma(20, 1.0);
     assert!((luma(40, 1.0) / dim - 2.0).abs() < 0.02);
@@ -108,7 +111,7 @@ fn the_horizon_reaches_its_set_point_of_80_between_100_and_200_lines() {
         let mut camera = PanoramicCamera::new(world, &PanoramicLens::default(), 1);
         let mut luma = |lines| {
             let exposure = Exposure { lines, gain: 1.0 };
-            mean(&ring_luma(camera.expose(&pose(0.0), exposure, 0)))
+            mean(&ring_luma(camera.expose(&at(0.0), exposure, 0)))
         };
         assert!(luma(100) < 80.0 && luma(200) > 80.0);
     }
@@ -116,20 +119,20 @@ fn the_horizon_reaches_its_set_point_of_80_between_100_and_200_lines() {
 
 #[test]
 fn a_frame_depends_on_seed_and_number_alone() {
-    let frame = |seed, number| *camera(seed).expose(&pose(0.1), EXPOSURE, number);
+    let frame = |seed, number| *camera(seed).expose(&at(0.1), EXPOSURE, number);
     assert_eq!(frame(1, 7), frame(1, 7));
     assert_ne!(frame(1, 7), frame(2, 7));
     assert_ne!(frame(1, 7), frame(1, 8));
     let mut used = camera(1);
-    used.expose(&pose(1.0), EXPOSURE, 3);
-    assert_eq!(*used.expose(&pose(0.1), EXPOSURE, 7), frame(1, 7));
+    used.expose(&at(1.0), EXPOSURE, 3);
+    assert_eq!(*used.expose(&at(0.1), EXPOSURE, 7), frame(1, 7));
 }
 
 #[test]
 fn noise_is_about_two_luma_and_has_no_bias() {
     let mut camera = camera(1);
-    let first = ring_luma(camera.expose(&pose(0.0), EXPOSURE, 1));
-    let second = ring_luma(camera.expose(&pose(0.0), EXPOSURE, 2));
+    let first = ring_luma(camera.expose(&at(0.0), EXPOSURE, 1));
+    let second = ring_luma(camera.expose(&at(0.0), EXPOSURE, 2));
     let differences: Vec<f32> = first.iter().zip(&second).map(|(a, b)| a - b).collect();
     let squares: Vec<f32> = differences.iter().map(|d| d * d).collect();
     // The difference of two frames has twice the variance of one.
@@ -141,7 +144,7 @@ fn noise_is_about_two_luma_and_has_no_bias() {
 #[test]
 fn bytes_are_u_y_v_y_with_neutral_chroma_a_dark_middle_and_a_bright_rim() {
     let mut camera = camera(1);
-    let frame = camera.expose(&pose(0.0), EXPOSURE, 0);
+    let frame = camera.expose(&at(0.0), EXPOSURE, 0);
     assert!(frame.iter().step_by(2).all(|&chroma| chroma == 0x80));
     let luma = |x: usize, y: usize| frame[LINE_BYTES * y + 2 * x + 1];
     assert!(luma(64, 48) < 25);
@@ -151,7 +154,7 @@ fn bytes_are_u_y_v_y_with_neutral_chroma_a_dark_middle_and_a_bright_rim() {
 #[test]
 fn a_masked_frame_is_black_with_neutral_chroma() {
     let mut camera = camera(1);
-    camera.expose(&pose(0.0), EXPOSURE, 0);
+    camera.expose(&at(0.0), EXPOSURE, 0);
     let (pixels, rest) = camera.black_frame().as_chunks::<2>();
     assert!(rest.is_empty() && pixels.iter().all(|pixel| *pixel == [0x80, 0x00]));
 }
@@ -166,9 +169,43 @@ fn gamma_lifts_the_dark_as_its_exponent_says() {
             black_level: 0.0,
             ..ImageTuning::default()
         });
-        let frame = camera.expose(&pose(0.0), EXPOSURE, 0);
+        let frame = camera.expose(&at(0.0), EXPOSURE, 0);
         f32::from(frame[LINE_BYTES * 48 + 2 * (64 + 46) + 1]) / 255.0
     };
     let (linear, shaped) = (luma(false), luma(true));
     assert!((shaped - linear.powf(0.55)).abs() < 0.01);
+}
+
+/// A frame whose rows each have a heading.
+fn rolled(camera: &mut PanoramicCamera, number: u32, yaw_rad: impl Fn(usize) -> f32) -> Frame {
+    camera.begin_frame(number);
+    camera.light_row(0, &at(yaw_rad(0)));
+    for row in 0..HEIGHT {
+        if row + 1 < HEIGHT {
+            camera.light_row(row + 1, &at(yaw_rad(row + 1)));
+        }
+        camera.read_row(row, EXPOSURE);
+    }
+    *camera.frame()
+}
+
+#[test]
+fn a_frame_exposed_row_by_row_at_one_moment_is_the_frame_of_that_moment() {
+    let mut rolling = camera(1);
+    // What was rendered before does not shine through.
+    rolling.expose(&at(2.0), EXPOSURE, 3);
+    let frame = rolled(&mut rolling, 4, |_| 0.3);
+    assert!(frame == *camera(1).expose(&at(0.3), EXPOSURE, 4));
+}
+
+#[test]
+fn rows_exposed_after_a_turn_show_what_the_camera_saw_after_it() {
+    let turn = HEIGHT / 2;
+    let frame = rolled(&mut camera(1), 0, |row| if row < turn { 0.0 } else { 1.0 });
+    let [before, after] = [0.0, 1.0].map(|yaw_rad| *camera(1).expose(&at(yaw_rad), EXPOSURE, 0));
+    // But for the rows at the seam, which the blur mixes.
+    let [start, end] = [turn - 1, turn + 1].map(|row| LINE_BYTES * row);
+    assert!(frame[..start] == before[..start]);
+    assert!(frame[end..] == after[end..]);
+    assert!(frame[end..] != before[end..]);
 }

@@ -195,7 +195,8 @@ impl Board for Emulated<'_> {
     }
 
     fn look_from(&mut self, pose: Pose) {
-        self.machine.wiring_mut().look_from(pose);
+        let now_ns = self.clock.0;
+        self.machine.wiring_mut().look_from(now_ns, pose);
     }
 
     fn transmit(&mut self, bytes: &[u8]) {

@@ -5,6 +5,7 @@ pub mod camera;
 pub mod emulated;
 mod firmware_log;
 pub mod native;
+mod poses;
 pub mod probe;
 mod rtt;
 pub mod sabotage;

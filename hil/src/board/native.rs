@@ -149,7 +149,8 @@ impl Board for Native {
     }
 
     fn look_from(&mut self, pose: Pose) {
-        self.camera.look_from(pose);
+        let now_ns = self.elapsed_ms * 1_000_000 + CAMERA_LEAD_NS;
+        self.camera.look_from(now_ns, pose);
     }
 
     fn transmit(&mut self, bytes: &[u8]) {

@@ -13,7 +13,7 @@ use std::time::Instant;
 use ::autopilot::app;
 use fake_sensors::camera::tcm8230::Tcm8230;
 use fake_sensors::camera::{PanoramicCamera, PanoramicLens};
-use fake_sensors::world::{UnknownWorld, World};
+use fake_sensors::world::{World, WorldError};
 use nav::RecordError;
 use pilot::Pilot;
 
@@ -44,9 +44,9 @@ pub struct Flown {
 /// A flight that could not be flown.
 #[derive(Debug, thiserror::Error)]
 pub enum FlightError {
-    /// There is no such world.
+    /// There is no such world, or its file is bad.
     #[error(transparent)]
-    World(#[from] UnknownWorld),
+    World(#[from] WorldError),
     /// The board cannot go on.
     #[error(transparent)]
     Board(#[from] BoardError),
@@ -96,7 +96,7 @@ pub fn fly_native(
     let pilot = Pilot::new(&parameters).map_err(BoardError::Calibration)?;
     let initial = pilot.exposure();
     let chip = Tcm8230::streaming(0, EXTCLK_HZ, initial.shutter_lines, initial.gain);
-    let world = World::named(&scenario.world, scenario.seed)?;
+    let world = World::open(&scenario.world, scenario.seed)?;
     let mut board = Native::new(pilot, camera(scenario, &world, chip));
     board.log_lens(&lens);
     fly(scenario, &world, &mut board, None, started, progress)
@@ -110,7 +110,7 @@ pub fn fly_emulated(
 ) -> Result<Flown, FlightError> {
     let started = Instant::now();
     let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
-    let world = World::named(&scenario.world, scenario.seed)?;
+    let world = World::open(&scenario.world, scenario.seed)?;
     let mut board = Emulated::boot(&firmware, camera(scenario, &world, Tcm8230::default()))?;
     fly(
         scenario,

@@ -47,7 +47,7 @@ pub struct AutopilotSetup<'s> {
 /// [`LiveError`] where it cannot begin.
 pub fn fly_aircraft(setup: &AutopilotSetup, say: &dyn Fn(Notice)) -> Result<Flown, LiveError> {
     let scenario = &setup.scenario;
-    let world = World::named(&scenario.world, scenario.seed)?;
+    let world = World::open(&scenario.world, scenario.seed)?;
     let route = scenario.route.waypoints();
     let mut session = Session {
         aircraft: Aircraft::new(scenario, &route),

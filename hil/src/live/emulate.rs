@@ -34,7 +34,7 @@ pub struct EmulateSetup<'s> {
     pub common: Common<'s>,
     /// The image.
     pub elf: &'s [u8],
-    /// What the camera looks at: a name that `fake_sensors::world` knows.
+    /// What the camera looks at: a name or a file that `fake_sensors::world` knows.
     pub world: String,
     /// Seed of world and camera noise.
     pub seed: u64,
@@ -51,7 +51,7 @@ pub struct EmulateSetup<'s> {
 /// [`LiveError`] where it cannot begin, or the emulated chip stops.
 pub fn emulate(setup: &EmulateSetup, say: &dyn Fn(Notice)) -> Result<Flown, LiveError> {
     let firmware = Firmware::parse(setup.elf)?;
-    let world = World::named(&setup.world, setup.seed)?;
+    let world = World::open(&setup.world, setup.seed)?;
     let scenario = scenario(setup);
     let camera = flight::camera(&scenario, &world, Tcm8230::default());
     let blank = Recording {

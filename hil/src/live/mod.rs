@@ -29,16 +29,16 @@ pub use pose::{Eyes, PoseError, PoseLine, PoseLines, Seen};
 pub use scribe::Notice;
 pub use stop::Stop;
 
-use fake_sensors::world::UnknownWorld;
+use fake_sensors::world::WorldError;
 
 use crate::board::BoardError;
 
 /// A live flight that could not be flown.
 #[derive(Debug, thiserror::Error)]
 pub enum LiveError {
-    /// There is no such world.
+    /// There is no such world, or its file is bad.
     #[error(transparent)]
-    World(#[from] UnknownWorld),
+    World(#[from] WorldError),
     /// The board cannot go on.
     #[error(transparent)]
     Board(#[from] BoardError),

@@ -174,8 +174,13 @@ impl Engine {
         self.step = Step::Start;
     }
 
+    /// What EXTCLK is divided by before the timing of full rate holds.
+    pub(super) fn clock_divider(&self) -> u32 {
+        1 + u32::from(self.latched.half_rate)
+    }
+
     /// FPS = 1 halves the pixel clock: everything takes twice as many EXTCLK cycles.
     fn scale(&self) -> u64 {
-        1 + u64::from(self.latched.half_rate)
+        u64::from(self.clock_divider())
     }
 }

@@ -233,6 +233,17 @@ impl Tcm8230 {
         self.engine.exposure()
     }
 
+    /// From the start of the current frame to the middle of the exposure of image line `line` (below
+    /// [`HEIGHT`](super::HEIGHT)), nanoseconds: a line is exposed until it is read out. Negative where
+    /// that was before the frame began.
+    #[must_use]
+    pub fn mid_exposure_ns(&self, line: usize) -> i64 {
+        let hz = self.clock.hz.unwrap_or(MIN_I2C_EXTCLK_HZ) / self.engine.clock_divider();
+        let readout_ns = line_offset_ns(line, hz) as i64;
+        let exposure_ns = u64::from(self.exposure().lines) * exposure_line_ns(hz);
+        readout_ns - exposure_ns as i64 / 2
+    }
+
     /// The image tuning registers, which take effect at once.
     #[must_use]
     pub fn tuning(&self) -> ImageTuning {

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use nalgebra::UnitQuaternion;
 
 use super::*;
-use crate::camera::{AnnulusRenderer, HEIGHT, PanoramicLens, Pose, WIDTH};
+use crate::camera::{AnnulusRenderer, HEIGHT, Moment, PanoramicLens, Pose, WIDTH};
 use crate::random::Normal;
 
 /// Each world, built once for all tests.
@@ -72,7 +72,7 @@ fn the_horizon_of_every_world_is_as_bright_as_a_grey_room_within_a_factor_of_two
             position_m: at(-2.5, 0.0),
             attitude: UnitQuaternion::identity(),
         };
-        let frame = renderer.render(&world, &pose, 0.0);
+        let frame = renderer.render(&world, &moment(pose, 0.0));
         let ring = (0..WIDTH * HEIGHT).filter(|index| {
             let centre = [(index % WIDTH) as f32 + 0.5, (index / WIDTH) as f32 + 0.5];
             (18.0..=42.0).contains(&lens.distance_from_centre(centre))
@@ -168,7 +168,7 @@ fn far_geometry_flickers_hardly_more_than_the_surfaces_of_the_arena() {
                     position_m: at(-2.5 + 0.01 * step as f32, 0.0),
                     attitude: UnitQuaternion::identity(),
                 };
-                renderer.render(&world, &pose, 0.0).to_vec()
+                renderer.render(&world, &moment(pose, 0.0)).to_vec()
             })
             .collect();
         let mut swings: Vec<f32> = frames
@@ -188,19 +188,25 @@ fn far_geometry_flickers_hardly_more_than_the_surfaces_of_the_arena() {
     }
 }
 
+fn moment(pose: Pose, time_s: f64) -> Moment {
+    Moment { pose, time_s }
+}
+
 #[test]
 fn a_row_rendered_alone_is_the_row_of_a_whole_frame() {
     let world = library("office");
     let mut noise = Normal::new(5, 1);
     let pose = somewhere(&world, &mut noise);
     let mut renderer = AnnulusRenderer::new(&PanoramicLens::default());
-    let whole = renderer.render(&world, &pose, 2.0).to_vec();
+    let whole = renderer.render(&world, &moment(pose, 2.0)).to_vec();
     let elsewhere = somewhere(&world, &mut noise);
-    renderer.render(&world, &elsewhere, 2.0);
+    renderer.render(&world, &moment(elsewhere, 2.0));
     for row in 0..HEIGHT {
-        renderer.render_rows(row..row + 1, &world, &pose, 2.0);
+        renderer.render_rows(row..row + 1, &world, &moment(pose, 2.0));
     }
-    assert!(renderer.finish() == whole);
+    for (row, line) in whole.chunks_exact(WIDTH).enumerate() {
+        assert!(renderer.row(row) == line);
+    }
 }
 
 #[test]
@@ -211,13 +217,19 @@ fn a_rolling_shutter_bends_what_the_camera_turns_past() {
         attitude: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle),
     };
     let mut renderer = AnnulusRenderer::new(&PanoramicLens::default());
-    let first = renderer.render(&world, &turned(0.0), 0.0).to_vec();
-    let last = renderer.render(&world, &turned(FRAC_PI_4), 0.0).to_vec();
-    renderer.render_rows(0..30, &world, &turned(0.0), 0.0);
-    renderer.render_rows(30..HEIGHT, &world, &turned(FRAC_PI_4), 0.0);
-    let rolled = renderer.finish();
+    let first = renderer.render(&world, &moment(turned(0.0), 0.0)).to_vec();
+    let last = renderer
+        .render(&world, &moment(turned(FRAC_PI_4), 0.0))
+        .to_vec();
+    renderer.render_rows(0..30, &world, &moment(turned(0.0), 0.0));
+    renderer.render_rows(30..HEIGHT, &world, &moment(turned(FRAC_PI_4), 0.0));
+    let line = |row: usize| row * WIDTH..(row + 1) * WIDTH;
     // The blur reaches one row further.
-    assert!(rolled[..29 * WIDTH] == first[..29 * WIDTH]);
-    assert!(rolled[31 * WIDTH..] == last[31 * WIDTH..]);
+    for row in 0..29 {
+        assert!(renderer.row(row) == &first[line(row)]);
+    }
+    for row in 31..HEIGHT {
+        assert!(renderer.row(row) == &last[line(row)]);
+    }
     assert!(first != last);
 }
