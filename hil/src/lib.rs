@@ -18,6 +18,7 @@ pub mod image;
 pub mod import_cf;
 pub mod link_check;
 pub mod live;
+pub mod look;
 pub mod metrics;
 pub mod parallel;
 pub mod record;

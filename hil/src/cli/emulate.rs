@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 
 use super::Failure;
 use super::console::Console;
 use super::fly::Image;
 use super::live::{LiveArguments, prepare, say};
+use super::world;
 use crate::live::{EmulateSetup, PoseSource, Stop, emulate};
 
 /// Options of `hil emulate`.
@@ -37,8 +37,8 @@ pub struct Arguments {
     /// poses to the port after it, else state]
     #[arg(long, value_name = "SOURCE")]
     pose: Option<PoseSource>,
-    /// The world
-    #[arg(long, default_value = "arena-panels", value_parser = PossibleValuesParser::new(fake_sensors::world::WORLD_NAMES))]
+    /// The world: a name that `hil look` lists, or a file
+    #[arg(long, default_value = "arena-panels", value_parser = world::parse)]
     world: String,
     /// Seed of world and camera noise
     #[arg(long, default_value_t = 1)]

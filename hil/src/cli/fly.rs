@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 
 use super::Failure;
 use super::conditions::ConditionArguments;
 use super::console::Console;
+use super::world;
 use crate::flight::{self, FlightError, Flown, Progress};
 use crate::folder;
 use crate::image;
@@ -40,8 +40,8 @@ pub struct ScenarioArguments {
     /// The way out
     #[arg(long, value_enum, default_value_t)]
     pub route: Route,
-    /// The world
-    #[arg(long, default_value = "arena-panels", value_parser = PossibleValuesParser::new(fake_sensors::world::WORLD_NAMES))]
+    /// The world: a name that `hil look` lists, or a file
+    #[arg(long, default_value = "arena-panels", value_parser = world::parse)]
     pub world: String,
     /// Metres between snapshots, in steps of 0.1; a sequence has its own spacing, 0.25 m
     #[arg(long, default_value = "2", value_parser = parse_spacing, value_name = "METRES")]

@@ -11,12 +11,15 @@ mod console;
 mod drift;
 mod ekf_replay;
 mod emulate;
+mod film;
 mod fly;
 mod homing_check;
 mod import_cf;
 mod link_check;
 mod live;
+mod look;
 mod steps;
+mod world;
 
 use std::process::ExitCode;
 
@@ -61,6 +64,10 @@ enum Verb {
     ImportCf(import_cf::Arguments),
     /// Holds the link's codec against records of another implementation's
     LinkCheck(link_check::Arguments),
+    /// Draws what the camera sees from a place, and what of it is remembered
+    Look(look::Arguments),
+    /// Draws what it sees along a route
+    Film(film::Arguments),
     /// Measures how far dead reckoning strays
     Drift(drift::Arguments),
     /// Injects faults at the camera's wires and looks what becomes of the frames
@@ -86,6 +93,8 @@ pub fn main() -> ExitCode {
         Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),
         Verb::ImportCf(arguments) => import_cf::run(&arguments, &console),
         Verb::LinkCheck(arguments) => link_check::run(&arguments, &console),
+        Verb::Look(arguments) => look::run(&arguments, &console),
+        Verb::Film(arguments) => film::run(&arguments, &console),
         Verb::Drift(arguments) => drift::run(&arguments, &console),
         Verb::CameraFaults(arguments) => camera_faults::run(&arguments, &console),
         Verb::EkfReplay(arguments) => ekf_replay::run(&arguments, &console),

@@ -10,7 +10,7 @@ mod conditions;
 mod errors;
 mod figures;
 mod histogram;
-mod horizon;
+pub(crate) mod horizon;
 mod key_figures;
 mod link;
 mod log;
