@@ -77,7 +77,7 @@ impl Observer {
         Ok(Self {
             optics: PanoramicCamera::new(world, &PanoramicLens::default(), seed),
             pilot: Pilot::new(&parameters)?,
-            map: PanoramaMap::new(&parameters.lens)?,
+            map: PanoramaMap::new(&parameters.lens, &pilot::FRAME_LAYOUT)?,
             frames: 0,
         })
     }
@@ -89,12 +89,12 @@ impl Observer {
             None => self.settle(moment),
         };
         let frame = Box::new(*self.expose(moment, exposure));
-        let horizon = self.map.horizon(&frame, 0.0);
+        let horizon = self.map.horizon(&*frame, 0.0);
         let spectrum = Spectrum::of(&horizon);
         Glance {
             moment: *moment,
             exposure,
-            panorama: self.map.unwrap(&frame),
+            panorama: self.map.unwrap(&*frame),
             horizon: *horizon.luma(),
             amplitudes: spectrum.coefficients().map(|c| libm::hypotf(c.re, c.im)),
             snapshot: Snapshot::quantise(&spectrum),
