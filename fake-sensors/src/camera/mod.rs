@@ -68,6 +68,11 @@ impl PanoramicCamera {
         self.sensor.set_tuning(tuning);
     }
 
+    /// Turns all lamps up or down: `light` times the world's own.
+    pub fn set_light(&mut self, light: f32) {
+        self.sensor.set_light(light);
+    }
+
     /// Takes frame `frame_number` all at one moment (the pose is that of the optic, whose centre is
     /// the camera's).
     pub fn expose(&mut self, moment: &Moment, exposure: Exposure, frame_number: u32) -> &Frame {

@@ -105,6 +105,18 @@ fn twice_the_shutter_or_the_gain_gives_twice_the_luma_above_black() {
 }
 
 #[test]
+fn half_the_light_is_made_up_for_by_twice_the_shutter() {
+    let mut camera = camera(1);
+    let exposure = |lines| Exposure { lines, gain: 1.0 };
+    let whole = mean(&ring_luma(camera.expose(&at(0.0), exposure(30), 0)));
+    camera.set_light(0.5);
+    let half = mean(&ring_luma(camera.expose(&at(0.0), exposure(30), 0)));
+    let twice = mean(&ring_luma(camera.expose(&at(0.0), exposure(60), 0)));
+    assert!((twice - whole).abs() < 0.1, "{twice} {whole}");
+    assert!(((half - 12.0) / (whole - 12.0) - 0.5).abs() < 0.02);
+}
+
+#[test]
 fn the_horizon_reaches_its_set_point_of_80_between_100_and_200_lines() {
     for seed in 1..=3 {
         let world = World::named("arena-panels", seed).unwrap();

@@ -33,6 +33,9 @@ pub struct ConditionArguments {
     /// Wind, m/s, from a direction that the seed draws; after a comma, turbulence as a share of it
     #[arg(long, value_name = "MEAN[,TURBULENCE]", value_parser = parse_wind)]
     wind: Option<Wind>,
+    /// All lamps' strength over that of the world's own, from 0.001 to 1000: the firmware's first exposure suits 1
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = parse_light, hide_default_value = true)]
+    light: f32,
     /// The lens record in the board's flash, as `hil calibrate` writes it [default: none]
     #[arg(long, value_name = "FILE", value_parser = parse_lens)]
     lens: Option<LensPage>,
@@ -55,6 +58,7 @@ impl ConditionArguments {
             quirks,
             correction: self.correction,
             wind: self.wind,
+            light: self.light,
             lens: self.lens,
         }
     }
@@ -71,6 +75,13 @@ fn parse_share(text: &str) -> Result<f64, String> {
         .map(|number: f64| number * unit)
         .filter(|share| (0.0..=1.0).contains(share))
         .ok_or_else(|| "a share from 0 to 1, or from 0% to 100%".to_owned())
+}
+
+fn parse_light(text: &str) -> Result<f32, String> {
+    text.parse()
+        .ok()
+        .filter(|factor| (0.001..=1_000.0).contains(factor))
+        .ok_or_else(|| "a factor from 0.001 to 1000".to_owned())
 }
 
 fn parse_time(text: &str) -> Result<f64, String> {

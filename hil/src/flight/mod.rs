@@ -124,7 +124,8 @@ pub fn fly_emulated(
 
 /// The camera of the drone on the ground at the start of the route.
 pub(crate) fn camera(scenario: &Scenario, world: &World, chip: Tcm8230) -> Camera {
-    let optics = PanoramicCamera::new(world.clone(), &PanoramicLens::default(), scenario.seed);
+    let mut optics = PanoramicCamera::new(world.clone(), &PanoramicLens::default(), scenario.seed);
+    optics.set_light(scenario.conditions.light);
     Camera::new(chip, optics, aircraft::pose_on_the_ground())
 }
 

@@ -30,8 +30,6 @@ const PANORAMA_HEIGHT: f64 = 112.0;
 /// The horizon below it.
 const HORIZON_TOP: f64 = 524.0;
 const HORIZON_HEIGHT: f64 = 140.0;
-/// Luma at the horizon's upper edge.
-const FULL_LUMA: f64 = 255.0;
 
 /// A look as a stand-alone SVG on a light background.
 pub fn picture(world: &str, glance: &Glance) -> String {
@@ -58,7 +56,7 @@ pub fn drawing(world: &str, glance: &Glance) -> Markup {
         text class="f-muted subtitle" x="0" y="36" { (caption(glance)) }
         (Raster::of_frame(&glance.frame).render([0.0, RING_TOP], RING_SIZE))
         (bars(glance))
-        text class="f-ink strong" x="0" y=(px(PANORAMA_TOP - 10.0)) { "Unrolled: 128 bearings, 16 elevations from -45 to 45 degrees" }
+        text class="f-ink strong" x="0" y=(px(PANORAMA_TOP - 10.0)) { "Unrolled: 128 bearings, 16 elevations from 45 degrees down to -45" }
         (Raster::of_panorama(&glance.panorama, &columns()).render([0.0, PANORAMA_TOP], [WIDTH, PANORAMA_HEIGHT]))
         (lines(glance))
     }
@@ -81,13 +79,18 @@ fn caption(glance: &Glance) -> String {
         pose.position_m.x,
         pose.position_m.y,
         pose.position_m.z,
-        yaw.to_degrees(),
-        roll.to_degrees(),
-        pitch.to_degrees(),
+        degrees(yaw),
+        degrees(roll),
+        degrees(pitch),
         glance.moment.time_s,
         glance.exposure.lines,
         glance.exposure.gain
     )
+}
+
+/// Whole degrees, never -0.
+fn degrees(angle_rad: f32) -> f32 {
+    angle_rad.to_degrees().round() + 0.0
 }
 
 /// The amplitudes of the frequencies, the stored ones in full colour, and the bytes that keep them.
@@ -118,6 +121,8 @@ fn bars(glance: &Glance) -> Markup {
 /// The horizon, and what the snapshot knows of it.
 fn lines(glance: &Glance) -> Markup {
     let mean = f64::from(glance.mean_luma());
+    let most = glance.horizon.iter().copied().fold(1.0, f32::max);
+    let place = |column, luma| place(column, luma / f64::from(1.1 * most));
     let seen = columns()
         .into_iter()
         .enumerate()
@@ -133,6 +138,7 @@ fn lines(glance: &Glance) -> Markup {
         text class="f-ink strong" x="0" y=(px(HORIZON_TOP - 8.0)) { "Horizon: what is seen, and (dashed) what 16 bytes remember" }
         path class="hair s-grid" d=(format!("M0 {}H{}", px(floor), px(WIDTH))) {}
         path class="hair s-grid" d=(svg::polyline([place(0, mean), place(BEARINGS - 1, mean)])) {}
+        text class="f-muted small end" x=(px(WIDTH)) y=(px(HORIZON_TOP - 8.0)) { (format!("mean luma {mean:.0}")) }
         path class="line curve s-ink" d=(svg::polyline(seen)) {}
         path class="line odometry s-homing" d=(svg::polyline(kept)) {}
         @for (index, name) in names.into_iter().enumerate() {
@@ -143,10 +149,10 @@ fn lines(glance: &Glance) -> Markup {
     }
 }
 
-fn place(column: usize, luma: f64) -> Point {
-    let x = (column as f64 + 0.5) * WIDTH / BEARINGS as f64;
+/// A column's place at a share of the diagram's height.
+fn place(column: usize, share: f64) -> Point {
     [
-        x,
-        HORIZON_TOP + HORIZON_HEIGHT * (1.0 - luma.clamp(0.0, FULL_LUMA) / FULL_LUMA),
+        (column as f64 + 0.5) * WIDTH / BEARINGS as f64,
+        HORIZON_TOP + HORIZON_HEIGHT * (1.0 - share.clamp(0.0, 1.0)),
     ]
 }

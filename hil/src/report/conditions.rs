@@ -30,6 +30,13 @@ pub fn in_words(conditions: &Conditions) -> Option<String> {
             number::trimmed(100.0 * wind.turbulence, 1)
         ));
     }
+    if conditions.light != usual.light {
+        let factor = number::trimmed(conditions.light.into(), 3);
+        words.push(format!("light {factor} times the world's own"));
+    }
+    if conditions.lens.is_some() {
+        words.push("a lens record in the flash".into());
+    }
     (!words.is_empty()).then(|| words.join(" · "))
 }
 
@@ -48,7 +55,7 @@ fn quirks(conditions: &Conditions) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Wind;
+    use crate::scenario::{LensPage, Wind};
 
     #[test]
     fn an_undisturbed_flight_has_no_conditions() {
@@ -65,6 +72,8 @@ mod tests {
                 mean_m_s: 1.5,
                 turbulence: 0.2,
             }),
+            light: 0.05,
+            lens: Some(LensPage::of(&nav::LensCalibration::DEFAULT)),
             ..Conditions::default()
         };
         let words = in_words(&conditions).expect("conditions");
@@ -73,6 +82,8 @@ mod tests {
             "autopilot restarts at 40 s",
             "soft corrections",
             "wind 1.5 m/s, turbulence 20 %",
+            "light 0.05 times the world's own",
+            "a lens record in the flash",
         ] {
             assert!(words.contains(part), "{part}: {words}");
         }

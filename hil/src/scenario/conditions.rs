@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 use super::LensPage;
 
 /// Nothing out of the ordinary, by default.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Conditions {
     /// Share of the link's bytes, both ways, that arrive as another byte, 0..=1.
     pub corrupted_share: f64,
@@ -20,9 +20,25 @@ pub struct Conditions {
     pub correction: Correction,
     /// The wind; none for still air.
     pub wind: Option<Wind>,
+    /// All lamps' strength over that of the world's own, which the firmware's first exposure suits.
+    pub light: f32,
     /// What the flash page of the lens record holds; none where it is erased.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lens: Option<LensPage>,
+}
+
+impl Default for Conditions {
+    fn default() -> Self {
+        Self {
+            corrupted_share: 0.0,
+            restart_s: None,
+            quirks: Quirks::default(),
+            correction: Correction::default(),
+            wind: None,
+            light: 1.0,
+            lens: None,
+        }
+    }
 }
 
 /// How firmly the autopilot's filter is told to believe a correction.
