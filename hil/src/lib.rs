@@ -7,6 +7,7 @@
 //! ```
 
 pub mod board;
+pub mod calibrate;
 pub mod camera_faults;
 pub mod cli;
 pub mod drift;

@@ -4,6 +4,7 @@
 //! does not hold). 2: it could not be done (wrong options, no compiler, a chip that stopped).
 
 mod autopilot;
+mod calibrate;
 mod camera_faults;
 mod campaign;
 mod conditions;
@@ -56,6 +57,8 @@ enum Verb {
     Autopilot(autopilot::Arguments),
     /// Flies many seeds and prints their statistics
     Campaign(campaign::Arguments),
+    /// Finds the lens in a unit's own pictures and writes its record
+    Calibrate(calibrate::Arguments),
     /// Builds the firmware with whatever toolchain there is, and says which
     Build,
     /// Holds the homing against a file of solved problems
@@ -89,6 +92,7 @@ pub fn main() -> ExitCode {
         Verb::Emulate(arguments) => emulate::run(&arguments, &console),
         Verb::Autopilot(arguments) => autopilot::run(&arguments, &console),
         Verb::Campaign(arguments) => campaign::run(&arguments, &console),
+        Verb::Calibrate(arguments) => calibrate::run(&arguments, &console),
         Verb::Build => build(&console),
         Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),
         Verb::ImportCf(arguments) => import_cf::run(&arguments, &console),
