@@ -17,8 +17,6 @@ pub const LINE_WORDS: u32 = (GEOMETRY.line_bytes() / 4) as u32;
 /// A frame as its readers see it.
 pub type Bytes = [u8; FRAME_BYTES];
 
-/// The sensor's frames are the pilot's.
-const _: fn(&Bytes) -> &pilot::Frame = |bytes| bytes;
 const _: () = assert!(GEOMETRY.line_bytes().is_multiple_of(4) && FRAME_WORDS <= u16::MAX as u32);
 
 /// Which of the two.

@@ -22,7 +22,7 @@ const FAILURES_TO_RESET: u32 = 3;
 
 /// Pause before a sensor that did not answer is asked again. With the reset it makes 17 ms, and is
 /// part of the 200 ms in which a camera that was unplugged gives frames again: 20 ms until its
-/// silence is noticed, these, and four frames.
+/// silence is noticed, these, a frame until the outputs come on, and three frames.
 const RETRY: Duration = Duration::from_millis(10);
 
 /// Least time between two warnings: an absent sensor fails 60 times a second. Every fault counts.

@@ -63,6 +63,8 @@ pub enum CameraFault {
     Overrun,
     /// The bus refuses the DMA a transfer
     DmaError,
+    /// The same between two frames, when no data come
+    DmaErrorBetween,
     /// The sensor's clock stops for five milliseconds within a frame
     StoppedClock,
     /// The sensor's clock stops for half a second within a frame
@@ -128,7 +130,14 @@ impl CameraFault {
                 },
             ),
             Self::Overrun => starve(bench, phase),
-            Self::DmaError => refuse(bench, phase),
+            Self::DmaError => {
+                bench.run_into_frame(phase.time())?;
+                Ok(refuse(bench))
+            }
+            Self::DmaErrorBetween => {
+                bench.run_into_blanking()?;
+                Ok(refuse(bench))
+            }
             Self::StoppedClock => in_frame(Sabotage::ClockStopped, SOME_LINES),
             Self::StoppedClockLong => in_frame(Sabotage::ClockStopped, long),
             Self::Unplugged => in_frame(Sabotage::Unplugged, long),
@@ -199,9 +208,7 @@ fn starve(bench: &mut Bench<'_>, phase: Phase) -> Result<(Nanos, Nanos), BenchEr
     Ok((from, bench.now()))
 }
 
-fn refuse(bench: &mut Bench<'_>, phase: Phase) -> Result<(Nanos, Nanos), BenchError> {
-    bench.run_into_frame(phase.time())?;
-    let now = bench.now();
+fn refuse(bench: &mut Bench<'_>) -> (Nanos, Nanos) {
     bench.meddle(|machine| machine.fail_dma(CAMERA_DMA.0, CAMERA_DMA.1));
-    Ok((now, now))
+    (bench.now(), bench.now())
 }

@@ -69,6 +69,7 @@ const RCC_AHB1ENR: u32 = 0x4002_3830;
 const RCC_APB1ENR: u32 = 0x4002_3840;
 const RCC_CSR: u32 = 0x4002_3874;
 const GPIOD: u32 = 0x4002_0c00;
+const DMA2: u32 = 0x4002_6400;
 const IWDG_KR: u32 = 0x4000_3000;
 const TIM7: u32 = 0x4000_1400;
 
@@ -208,4 +209,37 @@ fn a_program_runs_the_same_however_it_is_sliced() {
     for slice in [63, 1_000, 77_777] {
         assert!(run(slice) == whole, "slices of {slice} ns");
     }
+}
+
+#[test]
+fn a_bus_error_from_outside_stops_the_stream_and_shows_in_its_flags() {
+    const STREAM_1: u32 = DMA2 + 0x28;
+    let code = [
+        poke(RCC_AHB1ENR, 1 << 22),
+        poke(STREAM_1 + 4, 8),
+        poke(STREAM_1 + 8, 0x5005_0028),
+        poke(STREAM_1 + 12, SRAM + 0x100),
+        // Channel 1, words, memory increments, on.
+        poke(STREAM_1, 1 << 25 | 2 << 13 | 2 << 11 | 1 << 10 | 1),
+        // For ever: LISR to SRAM, S1CR to the word behind it.
+        load(0, DMA2).to_vec(),
+        load(1, STREAM_1).to_vec(),
+        load(2, SRAM).to_vec(),
+        vec![0x6803, store(3, 2), 0x680b, 0x6053, 0xe7fa],
+    ]
+    .concat();
+    let mut machine = Machine::new(&image(0, 0, &code), 8_000_000, Unwired).unwrap();
+    let seen = |machine: &mut Machine<Unwired>, until| {
+        machine.run_until(Nanos::from_millis(until)).unwrap();
+        let word = |address| machine.memory().read32(address).unwrap();
+        (word(SRAM), word(SRAM + 4) & 1)
+    };
+    assert_eq!(seen(&mut machine, 1), (0, 1));
+    // A stalled bus is no error.
+    machine.stall_dma(2, true);
+    assert_eq!(seen(&mut machine, 2), (0, 1));
+    machine.stall_dma(2, false);
+    machine.fail_dma(2, 1);
+    // TEIF1 of LISR (RM0090 §10.5.1).
+    assert_eq!(seen(&mut machine, 3), (1 << 9, 0));
 }
