@@ -12,6 +12,7 @@ pub mod camera_faults;
 pub mod cli;
 pub mod drift;
 pub mod ekf_replay;
+pub mod exposure;
 pub mod flight;
 pub mod folder;
 pub mod homing_check;

@@ -71,8 +71,8 @@ pub struct ExposureParameters {
 impl ExposureParameters {
     /// TCM8230MD at 21 MHz with its gamma on, as after reset, under lamps on 50 Hz.
     ///
-    /// - 80 of 255: paper, "Image processing". Dead band 2: it holds within 3 although the mean of a
-    ///   noisy frame is off by half a count and the steps of shutter and gain by as much.
+    /// - 80 of 255: paper, "Image processing". Dead band 1.5: it holds within 3 although the mean of a
+    ///   noisy frame is off by half a count, and that of 768 samples from that of all pixels by as much.
     /// - Gamma 0.55 and black level 12: data sheet, GAMSW and BRIGHT after reset. Clipped from 250 on:
     ///   the last few counts before white are not linear in any sensor.
     /// - 1..=525 lines of 1560 clocks and 0..24 dB in steps of 192/AG: data sheet, ESRSPD in normal mode
@@ -84,7 +84,7 @@ impl ExposureParameters {
     ///   once is the most that is still visible from below (68 counts above black become 0.7).
     pub const DEFAULT: Self = Self {
         set_point: 80.0,
-        dead_band: 2.0,
+        dead_band: 1.5,
         black_level: 12.0,
         clipped_from: 250,
         gamma: 0.55,
@@ -192,16 +192,19 @@ impl ExposureController {
         Some(next)
     }
 
-    /// The factor on the exposure: k^(1/γ), limited.
+    /// The factor on the exposure: k^(1/γ), within L either way. Downwards the limit is L^((1 + q) / 2)
+    /// where a share q of the samples is clipped: all of L where nothing else is seen, hardly more than
+    /// its root where most is seen, as too dark a frame is noisy.
     fn ratio(&self, histogram: &LumaHistogram) -> Option<f32> {
         let p = &self.parameters;
-        let factor = histogram.factor(&LumaScale {
+        let correction = histogram.correction(&LumaScale {
             black: p.black_level,
             clipped_from: p.clipped_from,
             wanted: p.set_point,
         })?;
-        let ratio = libm::powf(factor, 1.0 / p.gamma);
-        Some(ratio.max(1.0 / p.ratio_limit).min(p.ratio_limit))
+        let ratio = libm::powf(correction.factor, 1.0 / p.gamma);
+        let least = libm::powf(p.ratio_limit, -0.5 * (1.0 + correction.clipped));
+        Some(ratio.max(least).min(p.ratio_limit))
     }
 }
 

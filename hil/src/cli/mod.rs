@@ -12,6 +12,7 @@ mod console;
 mod drift;
 mod ekf_replay;
 mod emulate;
+mod exposure;
 mod film;
 mod fly;
 mod homing_check;
@@ -79,6 +80,8 @@ enum Verb {
     EkfReplay(ekf_replay::Arguments),
     /// Steps the set-point and looks at the answers
     Steps(steps::Arguments),
+    /// Holds the autoexposure against every light, setting and latency
+    Exposure(exposure::Arguments),
 }
 
 /// Why a verb could not be carried out.
@@ -103,6 +106,7 @@ pub fn main() -> ExitCode {
         Verb::CameraFaults(arguments) => camera_faults::run(&arguments, &console),
         Verb::EkfReplay(arguments) => ekf_replay::run(&arguments, &console),
         Verb::Steps(arguments) => steps::run(&arguments, &console),
+        Verb::Exposure(arguments) => exposure::run(&arguments, &console),
     };
     match result {
         Ok(true) => ExitCode::SUCCESS,

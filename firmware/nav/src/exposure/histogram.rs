@@ -17,6 +17,15 @@ pub(super) struct LumaScale {
     pub(super) wanted: f32,
 }
 
+/// What a histogram says of the exposure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Correction {
+    /// The factor on the luma above black, k.
+    pub(super) factor: f32,
+    /// The share of samples that are clipped, 0..=1.
+    pub(super) clipped: f32,
+}
+
 /// Luma of a clipped sample.
 const FULL: f32 = 255.0;
 
@@ -41,7 +50,7 @@ impl LumaHistogram {
     /// Samples that are clipped are taken to stay clipped. Upwards they do, and the factor is exact.
     /// Downwards they come down, unknown how far, and the next frame is too dark: but that one shows
     /// exactly what is missing, where one that is still clipped would not.
-    pub(super) fn factor(&self, scale: &LumaScale) -> Option<f32> {
+    pub(super) fn correction(&self, scale: &LumaScale) -> Option<Correction> {
         let (below_white, clipped) = self.counts.split_at(usize::from(scale.clipped_from));
         let count = |counts: &[u16]| -> u32 { counts.iter().map(|&count| u32::from(count)).sum() };
         let clipped = count(clipped);
@@ -54,10 +63,14 @@ impl LumaHistogram {
             .map(|(count, light)| count * light)
             .sum();
         let wanted = (scale.wanted - scale.black) * total as f32 - clipped as f32 * full;
-        Some(if visible < wanted {
+        let factor = if visible < wanted {
             upwards(below_white, scale.black, wanted, visible)
         } else {
             wanted.max(0.0) / visible.max(f32::MIN_POSITIVE)
+        };
+        Some(Correction {
+            factor,
+            clipped: clipped as f32 / total as f32,
         })
     }
 }
