@@ -1,3 +1,4 @@
 //! The lens, from the record in flash to the horizon.
 
+mod derotation;
 mod lens_record;

@@ -43,7 +43,7 @@ pub struct LensCalibration {
     pub outer_radius_px: f32,
     /// Where things at the height of the lens appear, pixels.
     pub horizon_radius_px: f32,
-    /// The angle of view between the band's edges, radians. Only derotation
+    /// The angle of view between the band's edges, radians. Only the [derotation](crate::Derotation)
     /// asks for it.
     pub vertical_field_rad: f32,
     /// Where the nose appears: radians from the right (x) towards the bottom (y) of the image, that

@@ -24,6 +24,7 @@
 #![no_std]
 
 pub mod calibration;
+pub mod derotation;
 pub mod exposure;
 pub mod homing;
 pub mod horizon;
@@ -35,6 +36,7 @@ pub mod snapshot;
 pub mod spectrum;
 
 pub use calibration::{BearingDirection, CalibrationError, LensCalibration, RecordError};
+pub use derotation::{Derotation, Tilt};
 pub use exposure::{Exposure, ExposureController, ExposureParameters, LumaHistogram};
 pub use homing::{HomingParameters, HomingVector, NoVectorReason};
 pub use horizon::Horizon;

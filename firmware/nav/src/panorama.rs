@@ -123,7 +123,7 @@ impl PanoramaMap {
 }
 
 /// The radius of a row: the middles of 16 equal rings, counted from the one that looks highest.
-fn radius_of(lens: &LensCalibration, row: usize) -> f32 {
+pub(crate) fn radius_of(lens: &LensCalibration, row: usize) -> f32 {
     let fraction = (row as f32 + 0.5) / RADII as f32;
     let span = lens.outer_radius_px - lens.inner_radius_px;
     if lens.inner_is_up {

@@ -23,8 +23,8 @@ use link::{Message, State};
 use nalgebra::Point2;
 use nav::navigator::EVENTS_PER_STEP;
 use nav::{
-    CalibrationError, ExposureController, ExposureParameters, FrameLayout, LensCalibration,
-    Navigator, PanoramaMap, Pose, SetPoint, Spectrum, Step,
+    CalibrationError, Derotation, ExposureController, ExposureParameters, FrameLayout,
+    LensCalibration, Navigator, PanoramaMap, Pose, SetPoint, Spectrum, Step, Tilt,
 };
 
 pub use nav::{Event, Exposure};
@@ -56,6 +56,9 @@ fn is_out_of_reach(vector: &SetPoint) -> bool {
 pub struct Parameters {
     /// The lens.
     pub lens: LensCalibration,
+    /// Whether roll and pitch of STATE level the horizon. Off, as in the paper: the angles of this drone
+    /// are small, and the published flight app sends zeros.
+    pub derotate: bool,
     /// The autoexposure.
     pub exposure: ExposureParameters,
     /// The navigator.
@@ -67,6 +70,7 @@ impl Parameters {
     /// level is then proportional to exposure; the sensor's contrast cancels in the control.
     pub const DEFAULT: Self = Self {
         lens: LensCalibration::DEFAULT,
+        derotate: false,
         exposure: ExposureParameters {
             gamma: 1.0,
             ..ExposureParameters::DEFAULT
@@ -90,10 +94,21 @@ pub struct FrameReport {
     pub exposure: Option<Exposure>,
 }
 
+/// What a level camera would see. Apart from the rest, which is quick and has no use for its registers.
+#[cold]
+#[inline(never)]
+fn level_view(derotation: &Derotation, frame: &Frame, heading: f32, tilt: Tilt) -> Spectrum {
+    Spectrum::of(&derotation.horizon(frame, heading, tilt))
+}
+
 /// Eyes, memory and decisions.
 #[derive(Debug)]
 pub struct Pilot {
     map: PanoramaMap,
+    /// Where it is switched on.
+    derotation: Option<Derotation>,
+    /// From the newest STATE that was believed.
+    tilt: Tilt,
     exposure: ExposureController,
     navigator: Navigator,
     /// The newest view, aligned to north by the newest heading, until a STATE has used it: a camera
@@ -113,6 +128,12 @@ impl Pilot {
     pub fn new(parameters: &Parameters) -> Result<Self, CalibrationError> {
         Ok(Self {
             map: PanoramaMap::new(&parameters.lens, &FRAME_LAYOUT)?,
+            derotation: if parameters.derotate {
+                Some(Derotation::new(&parameters.lens, &FRAME_LAYOUT)?)
+            } else {
+                None
+            },
+            tilt: Tilt::default(),
             exposure: ExposureController::new(parameters.exposure),
             navigator: Navigator::new(parameters.navigator),
             view: None,
@@ -125,7 +146,10 @@ impl Pilot {
     /// Looks at a frame. Once per frame; takes effect with the next STATE.
     pub fn on_frame(&mut self, frame: &Frame) -> FrameReport {
         let (horizon, mean_luma) = self.map.horizon_and_band(frame, self.heading);
-        self.view = Some(Spectrum::of(&horizon));
+        self.view = Some(match &self.derotation {
+            None => Spectrum::of(&horizon),
+            Some(derotation) => level_view(derotation, frame, self.heading, self.tilt),
+        });
         FrameReport {
             mean_luma,
             exposure: self.exposure.update(mean_luma, || self.map.band(frame)),
@@ -185,6 +209,10 @@ impl Pilot {
             return Events::from_iter([Event::InvalidPose]);
         };
         let pose = Pose::new(Point2::new(pose.x, pose.y), pose.yaw);
+        self.tilt = Tilt {
+            roll_rad: state.phi,
+            pitch_rad: state.theta,
+        };
         let step = self.answer(now_ms, &pose);
         reply::push(&step, outbox);
         self.states_since_mode += 1;

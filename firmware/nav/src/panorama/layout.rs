@@ -39,7 +39,7 @@ impl FrameLayout {
 
     /// The byte index of the luma of the pixel that covers (x, y), in the image coordinates of
     /// [`LensCalibration`](crate::LensCalibration); of the nearest pixel where none does.
-    pub(super) fn luma_index(&self, x: f32, y: f32) -> u16 {
+    pub(crate) fn luma_index(&self, x: f32, y: f32) -> u16 {
         // A float cast saturates, below at zero.
         let column = (x as usize).min(usize::from(self.width).saturating_sub(1));
         let row = (y as usize).min(usize::from(self.height).saturating_sub(1));

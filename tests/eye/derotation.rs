@@ -1,0 +1,90 @@
+//! The level horizon of a tilted camera, in rendered worlds.
+
+use core::f32::consts::TAU;
+
+use fake_sensors::camera::{Exposure, Moment, PanoramicCamera, PanoramicLens, Pose};
+use fake_sensors::world::World;
+use nalgebra::{UnitQuaternion, Vector3};
+use nav::horizon::BEARINGS;
+use nav::{Derotation, Horizon, LensCalibration, PanoramaMap, Tilt};
+use pilot::{FRAME_LAYOUT, Frame, Parameters, Pilot};
+
+const TILT_RAD: f32 = 15.0 * TAU / 360.0;
+const HEADING_RAD: f32 = 0.6;
+
+/// The most that derotation may leave of what a tilt does to the horizon, as a share. What a tilted ring
+/// does not show, a third of it, stays unknown.
+const LEFT_AT_MOST: f32 = 0.6;
+
+/// Rolls and pitches of 15 degrees all round.
+fn tilts() -> impl Iterator<Item = Tilt> {
+    (0..8).map(|n| {
+        let (sin, cos) = libm::sincosf(n as f32 * TAU / 8.0);
+        Tilt {
+            roll_rad: TILT_RAD * sin,
+            pitch_rad: TILT_RAD * cos,
+        }
+    })
+}
+
+/// What a camera sees that leans so. The world's body frame has y to the left: a pitch with the nose up
+/// is negative about it.
+fn frame(camera: &mut PanoramicCamera, tilt: Tilt) -> Frame {
+    let attitude = UnitQuaternion::from_euler_angles(tilt.roll_rad, -tilt.pitch_rad, HEADING_RAD);
+    let pose = Pose {
+        position_m: Vector3::new(-1.0, 0.4, 0.7),
+        attitude,
+    };
+    let exposure = Exposure {
+        lines: 100,
+        gain: 1.0,
+    };
+    *camera.expose(&Moment { pose, time_s: 0.0 }, exposure, 0)
+}
+
+/// Root mean square difference of two horizons whose means are the same; a snapshot has no mean.
+fn difference(a: &Horizon, b: &Horizon) -> f32 {
+    let mean = |horizon: &Horizon| horizon.luma().iter().sum::<f32>() / BEARINGS as f32;
+    let rest = mean(a) - mean(b);
+    let squares = a.luma().iter().zip(b.luma()).map(|(a, b)| {
+        let off = a - b - rest;
+        off * off
+    });
+    (squares.sum::<f32>() / BEARINGS as f32).sqrt()
+}
+
+/// With `--nocapture` the figures.
+#[test]
+fn derotated_at_15_degrees_the_horizon_resembles_the_level_one_far_more() {
+    let lens = LensCalibration::DEFAULT;
+    let map = PanoramaMap::new(&lens, &FRAME_LAYOUT).expect("the default lens");
+    let derotation = Derotation::new(&lens, &FRAME_LAYOUT).expect("the default lens");
+    println!("world            rms luma: as it is  derotated  (means over 8 tilts of 15 degrees)");
+    for name in ["arena-panels", "corridor-doors", "office"] {
+        let world = World::named(name, 1).expect("a world");
+        let mut camera = PanoramicCamera::new(world, &PanoramicLens::default(), 1);
+        let level = map.horizon(&frame(&mut camera, Tilt::default()), HEADING_RAD);
+        let (mut plain, mut derotated) = (0.0, 0.0);
+        for tilt in tilts() {
+            let frame = frame(&mut camera, tilt);
+            plain += difference(&map.horizon(&frame, HEADING_RAD), &level) / 8.0;
+            let horizon = derotation.horizon(&frame, HEADING_RAD, tilt);
+            derotated += difference(&horizon, &level) / 8.0;
+        }
+        println!("{name:<18}{plain:>17.1}{derotated:>11.1}");
+        assert!(
+            derotated < LEFT_AT_MOST * plain,
+            "{name}: {plain} {derotated}"
+        );
+    }
+}
+
+#[test]
+fn derotation_is_off_by_default_and_a_parameter_of_the_pilot() {
+    const { assert!(!Parameters::DEFAULT.derotate) };
+    let parameters = Parameters {
+        derotate: true,
+        ..Parameters::DEFAULT
+    };
+    assert!(Pilot::new(&parameters).is_ok());
+}
