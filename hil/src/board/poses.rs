@@ -9,6 +9,15 @@ use fake_sensors::camera::{Moment, Pose};
 /// and a row's way through the board's clock.
 const KEPT: usize = 64;
 
+/// What the camera's times are rounded to, nanoseconds. An emulated board's flight begins with a cycle
+/// of its processor, up to 6 ns late by the camera's clock, and its edges are whole nanoseconds: less
+/// than the rounding, so that it sees what a board without a processor sees, to the bit.
+const GRAIN_NS: i64 = 1_000;
+
+/// Half a grain, to the nearest, and half of the least step between two of the camera's times (a half
+/// of 1/21 us): the border between two grains is as far from those as it can be.
+const BORDER_NS: i64 = GRAIN_NS / 2 + 12;
+
 /// Poses on the camera's clock.
 #[derive(Clone, Debug)]
 pub struct Poses {
@@ -39,6 +48,7 @@ impl Poses {
     /// Pose and time of flight at `at_ns`: between two poses on the way from one to the other, before
     /// the oldest and after the newest at rest.
     pub fn at(&self, at_ns: u64) -> Moment {
+        let at_ns = self.rounded(at_ns);
         let begun_ns = at_ns.saturating_sub(self.epoch_ns.unwrap_or(at_ns));
         let next = self
             .known
@@ -56,6 +66,18 @@ impl Poses {
             pose,
             time_s: begun_ns as f64 * 1e-9,
         }
+    }
+}
+
+impl Poses {
+    /// Whole grains from the beginning of the flight.
+    fn rounded(&self, at_ns: u64) -> u64 {
+        let Some(epoch_ns) = self.epoch_ns else {
+            return at_ns;
+        };
+        let since_ns = at_ns.wrapping_sub(epoch_ns).cast_signed();
+        let grains = (since_ns + BORDER_NS).div_euclid(GRAIN_NS);
+        epoch_ns.saturating_add_signed(grains * GRAIN_NS)
     }
 }
 
@@ -96,6 +118,20 @@ mod tests {
         let turned = (yaw - 8.525).rem_euclid(core::f32::consts::TAU);
         assert!(turned.min(core::f32::consts::TAU - turned) < 1e-4);
         assert!((moment.time_s - 0.085_25).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_clock_that_is_a_few_nanoseconds_late_sees_the_same() {
+        let poses = path();
+        for cycle in 0..42 {
+            // A time of the camera's, in halves of 1/21 us.
+            let at_ns = 90_250_000 + (cycle * 1_000_u64).div_ceil(42);
+            let moment = poses.at(at_ns);
+            for late_ns in 0..=7 {
+                let late = poses.at(at_ns - late_ns);
+                assert_eq!(late.pose, moment.pose, "cycle {cycle}, {late_ns} ns");
+            }
+        }
     }
 
     #[test]
