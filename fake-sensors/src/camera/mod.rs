@@ -1,11 +1,15 @@
 //! The panoramic camera: world, lens and image sensor, from a pose to the bytes on the bus.
 
+mod blemish;
 mod lens;
+mod pattern;
 mod render;
 mod sensor;
 pub mod tcm8230;
 
+pub use blemish::{BadPixel, Blemishes};
 pub use lens::{Direction, PanoramicLens, View};
+pub use pattern::TestPattern;
 pub use render::{AnnulusRenderer, Moment, Pose};
 pub use sensor::{Exposure, ImageSensor, ImageTuning, MAX_EXPOSURE_LINES};
 

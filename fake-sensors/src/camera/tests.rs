@@ -221,3 +221,88 @@ fn rows_exposed_after_a_turn_show_what_the_camera_saw_after_it() {
     assert!(frame[end..] == after[end..]);
     assert!(frame[end..] != before[end..]);
 }
+
+/// A grey wall all round, without noise to speak of: what differs is the camera's own.
+fn lit_evenly(tuning: ImageTuning, seed: u64) -> Frame {
+    let mut sensor = ImageSensor::new(&PanoramicLens::default(), seed);
+    sensor.set_tuning(tuning);
+    sensor.begin_frame(0);
+    let mut frame = [0; FRAME_BYTES];
+    let (lines, _) = frame.as_chunks_mut::<LINE_BYTES>();
+    for (row, line) in lines.iter_mut().enumerate() {
+        sensor.form_row(row, &[0.4; WIDTH], EXPOSURE, line);
+    }
+    frame
+}
+
+fn luma_of(frame: &Frame) -> impl Iterator<Item = u8> + '_ {
+    frame.iter().skip(1).step_by(2).copied()
+}
+
+#[test]
+fn bad_pixels_show_as_soon_as_nobody_corrects_them_and_stay_where_they_are() {
+    let raw = ImageTuning {
+        blemish_correction: false,
+        ..ImageTuning::default()
+    };
+    let places = |frame: &Frame| -> Vec<usize> {
+        let is_bad = |luma: &u8| *luma <= 12 || *luma == 255;
+        luma_of(frame)
+            .enumerate()
+            .filter_map(|(place, luma)| is_bad(&luma).then_some(place))
+            .collect()
+    };
+    let bad = places(&lit_evenly(raw, 1));
+    assert!((8..=12).contains(&bad.len()), "{bad:?}");
+    assert_eq!(places(&lit_evenly(raw, 1)), bad);
+    assert_ne!(
+        places(&lit_evenly(raw, 2)),
+        bad,
+        "another camera has others"
+    );
+    assert!(places(&lit_evenly(ImageTuning::default(), 1)).is_empty());
+}
+
+#[test]
+fn dust_takes_a_fifth_of_the_light_in_few_places_of_the_ring() {
+    let dust = Blemishes::new(&PanoramicLens::default(), 1);
+    let centres = (0..WIDTH * HEIGHT).map(|index| [(index % WIDTH) as f32, (index / WIDTH) as f32]);
+    let shaded: Vec<f32> = centres
+        .map(|centre| dust.transmission(centre))
+        .filter(|transmission| *transmission < 0.95)
+        .collect();
+    assert!((20..120).contains(&shaded.len()), "{}", shaded.len());
+    let darkest = shaded.into_iter().fold(1.0, f32::min);
+    assert!((0.6..0.85).contains(&darkest), "{darkest}");
+}
+
+#[test]
+fn test_pictures_know_no_light_no_noise_and_no_blemish() {
+    let picture = |pattern| {
+        let tuning = ImageTuning {
+            gamma: true,
+            test_pattern: Some(pattern),
+            ..ImageTuning::default()
+        };
+        lit_evenly(tuning, 1)
+    };
+    let bars = picture(TestPattern::Bars);
+    assert_eq!(bars[..4], [128, 255, 128, 255], "white");
+    assert_eq!(
+        bars[2 * 16..][..4],
+        [0, 226, 149, 226],
+        "yellow, from pixel 16 on"
+    );
+    assert_eq!(bars[LINE_BYTES - 4..LINE_BYTES], [128, 0, 128, 0], "black");
+    let ramp: Vec<u8> = luma_of(&picture(TestPattern::Ramp)).take(WIDTH).collect();
+    assert!(ramp.is_sorted() && ramp[0] == 0 && ramp[WIDTH - 1] == 255);
+    // Gamma lifts the middle: 255 x 1.2 x 0.5^0.55 + 12.
+    let shaped: Vec<u8> = luma_of(&picture(TestPattern::RampBeforeGamma))
+        .take(WIDTH)
+        .collect();
+    assert!(shaped.is_sorted() && shaped[WIDTH / 2] > 200 && ramp[WIDTH / 2] < 130);
+    for frame in [bars, picture(TestPattern::Ramp)] {
+        let (lines, _) = frame.as_chunks::<LINE_BYTES>();
+        assert!(lines.iter().all(|line| line == &lines[0]));
+    }
+}

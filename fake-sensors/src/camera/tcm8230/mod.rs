@@ -5,7 +5,7 @@
 //! nanoseconds, never backwards, and takes each edge when it is due, before any later call.
 //!
 //! Not modelled: automatic exposure (ALCSW = 0 keeps the shutter and gain registers), long
-//! exposure modes, image sizes other than 128 x 96, test patterns, embedded synchronisation codes.
+//! exposure modes, image sizes other than 128 x 96, embedded synchronisation codes.
 
 mod engine;
 mod registers;
@@ -13,8 +13,8 @@ mod timing;
 
 pub use engine::{Edge, ExposureLatency};
 pub use registers::{
-    ANALOGUE_GAIN, BRIGHTNESS, CLOCK, CONTRAST, DIGITAL_GAIN, GAMMA, OUTPUT, RESET, SHUTTER_HIGH,
-    SHUTTER_LOW, SYNC, code_of_gain, gain_of_code,
+    ANALOGUE_GAIN, BLEMISH, BRIGHTNESS, CLOCK, CONTRAST, DIGITAL_GAIN, GAMMA, OUTPUT, RESET,
+    SHUTTER_HIGH, SHUTTER_LOW, SYNC, code_of_gain, gain_of_code,
 };
 pub use timing::{
     exposure_line_ns, frame_active_ns, frame_period_ns, line_burst_ns, line_offset_ns, line_slot,

@@ -1,5 +1,6 @@
 //! The TCM8230MD's register file (data sheet v1.20, register table; application note v1.1).
 
+use super::super::pattern::TestPattern;
 use super::super::sensor::{Exposure, ImageTuning, MAX_EXPOSURE_LINES};
 
 /// FPS (bit 7) and flicker detection; effective at vertical sync.
@@ -18,12 +19,15 @@ pub const GAMMA: u8 = 0x0d;
 pub const CONTRAST: u8 = 0x11;
 /// BRIGHT, signed black level in luma counts.
 pub const BRIGHTNESS: u8 = 0x12;
-/// D_MASK (bits 7..6): frames output black after power-on and after a change of mode.
+/// D_MASK (bits 7..6): frames output black after power-on and after a change of mode; TESPIC (bit 2) and
+/// PICSEL (bits 1..0): test pictures; effective at vertical sync.
 pub const SYNC: u8 = 0x1e;
 /// SLEEPSW (bit 7), SRST (bit 6).
 pub const RESET: u8 = 0x1f;
 /// DG (bits 5..0), digital gain 1 + DG/64.
 pub const DIGITAL_GAIN: u8 = 0x3b;
+/// Bit 5: bad pixels are corrected.
+pub const BLEMISH: u8 = 0x59;
 /// ESROUT, AGOUT, DGOUT, ALCDATA: what the chip reports; not writable.
 const READ_ONLY: std::ops::RangeInclusive<u8> = 0x32..=0x38;
 
@@ -49,7 +53,7 @@ const DEFAULTS_HIGH: [(u8, u8); 8] = [
     (0x3b, 0x80),
     (0x3d, 0x17),
     (0x3e, 0x85),
-    (0x59, 0x23),
+    (BLEMISH, 0x23),
 ];
 
 /// Analogue gain of register code AG: 192/AG, within x1..x16.
@@ -139,7 +143,19 @@ impl RegisterFile {
             contrast: f32::from(self.read(CONTRAST)) / 128.0,
             black_level: f32::from(self.read(BRIGHTNESS).cast_signed()),
             digital_gain: 1.0 + f32::from(self.read(DIGITAL_GAIN) & 0x3f) / 64.0,
+            blemish_correction: self.read(BLEMISH) & 0x20 != 0,
+            test_pattern: self.test_pattern(),
         }
+    }
+
+    fn test_pattern(&self) -> Option<TestPattern> {
+        const TESPIC: u8 = 0x04;
+        let sync = self.read(SYNC);
+        (sync & TESPIC != 0).then_some(match sync & 3 {
+            0 => TestPattern::Bars,
+            1 => TestPattern::Ramp,
+            _ => TestPattern::RampBeforeGamma,
+        })
     }
 }
 

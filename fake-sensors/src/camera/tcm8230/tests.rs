@@ -1,4 +1,5 @@
 use super::super::HEIGHT;
+use super::super::TestPattern;
 use super::*;
 
 const EXTCLK_HZ: u32 = 21_000_000;
@@ -286,4 +287,21 @@ fn a_reset_line_that_stays_high_changes_nothing() {
     let due_ns = chip.next_edge();
     chip.set_reset(FIRST_NS + 10_000, true);
     assert_eq!(chip.next_edge(), due_ns);
+}
+
+#[test]
+fn test_pictures_and_the_correction_of_bad_pixels_are_switched_by_their_bits() {
+    let mut chip = enabled(ExposureLatency::default());
+    assert_eq!(chip.tuning().test_pattern, None);
+    assert!(chip.tuning().blemish_correction);
+    for (sync, pattern) in [
+        (0x4c, TestPattern::Bars),
+        (0x4d, TestPattern::Ramp),
+        (0x4e, TestPattern::RampBeforeGamma),
+    ] {
+        chip.write_register(FIRST_NS, SYNC, sync);
+        assert_eq!(chip.tuning().test_pattern, Some(pattern));
+    }
+    chip.write_register(FIRST_NS, BLEMISH, 0x03);
+    assert!(!chip.tuning().blemish_correction);
 }
