@@ -2,3 +2,4 @@
 
 mod derotation;
 mod lens_record;
+mod second_sensor;

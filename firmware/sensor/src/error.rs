@@ -11,20 +11,21 @@ pub enum Error<E> {
         id: u8,
     },
     /// The bus failed, after the retries that make sense for its error.
-    Bus(E),
-}
-
-impl<E> From<E> for Error<E> {
-    fn from(error: E) -> Self {
-        Self::Bus(error)
-    }
+    Bus {
+        /// The register at which the transfer began: how far the driver had come.
+        register: u16,
+        /// What the bus says.
+        error: E,
+    },
 }
 
 impl<E: fmt::Debug> fmt::Display for Error<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFound { id } => write!(f, "another device answers: its identity is {id:#04x}"),
-            Self::Bus(error) => write!(f, "I2C: {error:?}"),
+            Self::Bus { register, error } => {
+                write!(f, "I2C, at register {register:#04x}: {error:?}")
+            }
         }
     }
 }

@@ -111,7 +111,12 @@ enum Fault {
         id: u8,
     },
     /// The bus failed.
-    Bus(i2c::Error),
+    Bus {
+        /// The register at which the transfer began.
+        register: u16,
+        /// How.
+        error: i2c::Error,
+    },
     /// The bus hangs.
     Hangs,
     /// It answers but sends no frames.
@@ -128,7 +133,7 @@ impl From<sensor::Error<i2c::Error>> for Fault {
     fn from(error: sensor::Error<i2c::Error>) -> Self {
         match error {
             sensor::Error::NotFound { id } => Self::Stranger { id },
-            sensor::Error::Bus(error) => Self::Bus(error),
+            sensor::Error::Bus { register, error } => Self::Bus { register, error },
         }
     }
 }
@@ -137,7 +142,9 @@ impl defmt::Format for Fault {
     fn format(&self, f: defmt::Formatter<'_>) {
         match self {
             Self::Stranger { id } => defmt::write!(f, "another device answers ({=u8:#x})", id),
-            Self::Bus(error) => defmt::write!(f, "I2C {}", error),
+            Self::Bus { register, error } => {
+                defmt::write!(f, "I2C {} at register {=u16:#x}", error, register)
+            }
             Self::Hangs => defmt::write!(f, "I2C hangs"),
             Self::Silent => defmt::write!(f, "no frames"),
         }

@@ -41,6 +41,18 @@ pub const SETTLING_FRAMES: u8 = LATENCY_FRAMES;
 /// one; a sensor that is absent refuses all, soon.
 const TRIES: u8 = 3;
 
+/// What the sensor shows instead of a picture (register 1E: TESPIC, PICSEL).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum TestPattern {
+    /// Colour bars.
+    Bars = 0,
+    /// A ramp that gamma does not bend.
+    RampAfterGamma = 1,
+    /// A ramp that gamma bends.
+    RampBeforeGamma = 2,
+}
+
 /// The driver. It owns the bus or a share of it (`embassy-embedded-hal` has shares).
 #[derive(Debug)]
 pub struct Tcm8230<B> {
@@ -51,8 +63,15 @@ pub struct Tcm8230<B> {
 impl<B: I2c> Tcm8230<B> {
     /// A driver for the sensor on `bus` that is clocked with `clock_hz` (EXTCLK, 11.9 to 25 MHz).
     ///
-    /// The sensor must have its supplies, its clock, and 2000 clocks behind it since RESET rose
-    /// before [`probe`](ImageSensor::probe) is called.
+    /// Before [`probe`](ImageSensor::probe) is called the board sees to the order of the data sheet's
+    /// power-on sequence:
+    ///
+    /// 1. supplies: 1.5 V, then 2.8 V for the pixels, then 2.8 V for the pins, at most 100 ms apart;
+    /// 2. EXTCLK, with a duty of 45 to 55 %, while RESET is low, for at least 100 clocks;
+    /// 3. RESET high, and at least 2000 clocks before the first transfer, which is refused until then.
+    ///
+    /// A sensor that was cut off within a transfer may hold the data line: nine clocks free the bus.
+    /// After a failed [`init`](ImageSensor::init) begin again with 2.
     pub const fn new(bus: B, clock_hz: u32) -> Self {
         Self { bus, clock_hz }
     }
@@ -67,7 +86,12 @@ impl<B: I2c> Tcm8230<B> {
         loop {
             match self.bus.write(ADDRESS, bytes).await {
                 Ok(()) => return Ok(()),
-                Err(error) if tries == TRIES || !is_passing(&error) => return Err(error.into()),
+                Err(error) if tries == TRIES || !is_passing(&error) => {
+                    return Err(Error::Bus {
+                        register: bytes.first().copied().unwrap_or_default().into(),
+                        error,
+                    });
+                }
                 Err(_) => tries += 1,
             }
         }
@@ -80,10 +104,29 @@ impl<B: I2c> Tcm8230<B> {
             let address = [register as u8];
             match self.bus.write_read(ADDRESS, &address, &mut value).await {
                 Ok(()) => return Ok(value[0]),
-                Err(error) if tries == TRIES || !is_passing(&error) => return Err(error.into()),
+                Err(error) if tries == TRIES || !is_passing(&error) => {
+                    return Err(Error::Bus {
+                        register: register as u16,
+                        error,
+                    });
+                }
                 Err(_) => tries += 1,
             }
         }
+    }
+
+    /// Replaces the picture by a pattern of the sensor's own, or brings it back, from the next vertical
+    /// sync on: known bytes, to try wires and capture with.
+    ///
+    /// # Errors
+    /// [`Error::Bus`]: the sensor shows what it showed before, or what was asked for.
+    pub async fn set_test_pattern(
+        &mut self,
+        pattern: Option<TestPattern>,
+    ) -> Result<(), Error<B::Error>> {
+        let bits = pattern.map_or(0, |pattern| registers::TEST_PATTERN | pattern as u8);
+        self.write(Register::Sync, registers::SYNC_BY_PINS | bits)
+            .await
     }
 
     /// Lines in the given fraction of a second, as registers 1C and 1D want them.

@@ -67,6 +67,9 @@ pub const GAMMA_OFF: u8 = 0x80;
 /// reset value).
 pub const SYNC_BY_PINS: u8 = 0x48;
 
+/// [`Register::Sync`], bit 2: a test pattern, by its number in bits 1..0, in place of the picture.
+pub const TEST_PATTERN: u8 = 0x04;
+
 /// [`Register::ReadoutPhase`]: the value the application note calls mandatory (reset: 0x26).
 pub const READOUT_PHASE_MANDATORY: u8 = 0x28;
 

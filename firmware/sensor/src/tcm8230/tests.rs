@@ -3,6 +3,7 @@
 
 extern crate std;
 
+use core::future::Future;
 use std::{vec, vec::Vec};
 
 use embedded_hal_async::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation};
@@ -16,6 +17,7 @@ const CLOCK_HZ: u32 = 21_000_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum MockError {
     Nack,
+    ArbitrationLoss,
     Stuck,
 }
 
@@ -23,6 +25,7 @@ impl i2c::Error for MockError {
     fn kind(&self) -> ErrorKind {
         match self {
             Self::Nack => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown),
+            Self::ArbitrationLoss => ErrorKind::ArbitrationLoss,
             Self::Stuck => ErrorKind::Bus,
         }
     }
@@ -35,6 +38,10 @@ struct RegisterFile {
     writes: Vec<(u8, Vec<u8>)>,
     /// Errors of the next transactions, last first.
     failures: Vec<MockError>,
+    /// Transactions that go through before the failures begin.
+    good: usize,
+    /// A transaction never ends: something holds the clock.
+    hangs: bool,
 }
 
 impl RegisterFile {
@@ -46,6 +53,8 @@ impl RegisterFile {
             pointer: 0,
             writes: vec![],
             failures: vec![],
+            good: 0,
+            hangs: false,
         }
     }
 
@@ -68,7 +77,12 @@ impl I2c for &mut RegisterFile {
         operations: &mut [Operation<'_>],
     ) -> Result<(), MockError> {
         assert_eq!(address, 0x3c, "nobody else is on the bus");
-        if let Some(error) = self.failures.pop() {
+        if self.hangs {
+            core::future::pending::<()>().await;
+        }
+        if let Some(left) = self.good.checked_sub(1) {
+            self.good = left;
+        } else if let Some(error) = self.failures.pop() {
             return Err(error);
         }
         for operation in operations {
@@ -198,7 +212,10 @@ fn two_refusals_are_survived_and_the_third_is_reported() {
     let mut file = RegisterFile::failing(&[Nack, Nack, Nack]);
     assert_eq!(
         block_on(Tcm8230::new(&mut file, CLOCK_HZ).set_exposure(10, 1.0)),
-        Err(Error::Bus(Nack))
+        Err(Error::Bus {
+            register: 0x05,
+            error: Nack
+        })
     );
 }
 
@@ -207,7 +224,10 @@ fn a_stuck_bus_is_reported_at_once() {
     let mut file = RegisterFile::failing(&[MockError::Stuck]);
     assert_eq!(
         block_on(Tcm8230::new(&mut file, CLOCK_HZ).probe()),
-        Err(Error::Bus(MockError::Stuck))
+        Err(Error::Bus {
+            register: 0x00,
+            error: MockError::Stuck
+        })
     );
     assert!(file.failures.is_empty(), "one transaction, no retry");
 }
@@ -232,4 +252,70 @@ fn a_frame_is_24576_bytes_of_uyvy() {
     assert_eq!(GEOMETRY.line_bytes(), 256);
     assert_eq!(GEOMETRY.frame_bytes(), 24_576);
     assert_eq!(GEOMETRY.luma_offset, 1);
+}
+
+#[test]
+fn lost_arbitration_is_tried_again_like_a_refusal() {
+    use MockError::{ArbitrationLoss, Nack};
+    let mut file = RegisterFile::failing(&[ArbitrationLoss, Nack]);
+    assert_eq!(block_on(Tcm8230::new(&mut file, CLOCK_HZ).probe()), Ok(()));
+    let mut file = RegisterFile::failing(&[ArbitrationLoss; 3]);
+    assert_eq!(
+        block_on(Tcm8230::new(&mut file, CLOCK_HZ).probe()),
+        Err(Error::Bus {
+            register: 0x00,
+            error: ArbitrationLoss
+        })
+    );
+}
+
+#[test]
+fn a_failed_init_names_the_register_it_came_to() {
+    // The order of the set-up: read-out phase, sync, timing, lines, gamma.
+    for (good, register) in [(0, 0x22), (1, 0x1e), (2, 0x02), (3, 0x1c), (5, 0x0d)] {
+        let mut file = RegisterFile::failing(&[MockError::Nack; 3]);
+        file.good = good;
+        let error = block_on(Tcm8230::new(&mut file, CLOCK_HZ).init(1, 1.0));
+        let named = Error::Bus {
+            register,
+            error: MockError::Nack,
+        };
+        assert_eq!(error, Err(named));
+    }
+}
+
+/// The board ends a transfer that hangs by dropping it.
+#[test]
+fn a_dropped_transfer_leaves_the_driver_usable_and_the_sensor_as_it_was() {
+    let mut file = initialised();
+    let before = file.registers;
+    file.hangs = true;
+    {
+        let mut sensor = Tcm8230::new(&mut file, CLOCK_HZ);
+        let mut transfer = core::pin::pin!(sensor.set_exposure(200, 2.0));
+        let mut context = core::task::Context::from_waker(core::task::Waker::noop());
+        assert!(transfer.as_mut().poll(&mut context).is_pending());
+    }
+    assert_eq!(file.registers, before);
+    file.hangs = false;
+    assert_eq!(
+        block_on(Tcm8230::new(&mut file, CLOCK_HZ).set_exposure(200, 2.0)),
+        Ok(())
+    );
+    assert_eq!(file.registers[5..8], [0x80, 200, 0x60]);
+}
+
+#[test]
+fn test_patterns_come_and_go_by_register_1e_and_leave_the_syncs_alone() {
+    let mut file = initialised();
+    for (pattern, value) in [
+        (Some(TestPattern::Bars), 0x4c),
+        (Some(TestPattern::RampAfterGamma), 0x4d),
+        (Some(TestPattern::RampBeforeGamma), 0x4e),
+        (None, 0x48),
+    ] {
+        let mut sensor = Tcm8230::new(&mut file, CLOCK_HZ);
+        assert_eq!(block_on(sensor.set_test_pattern(pattern)), Ok(()));
+        assert_eq!(file.registers[0x1e], value, "{pattern:?}");
+    }
 }
