@@ -1,6 +1,7 @@
 //! The panoramic camera: world, lens and image sensor, from a pose to the bytes on the bus.
 
 mod blemish;
+mod flicker;
 mod lens;
 mod pattern;
 mod render;
@@ -8,6 +9,7 @@ mod sensor;
 pub mod tcm8230;
 
 pub use blemish::{BadPixel, Blemishes};
+pub use flicker::Flicker;
 pub use lens::{Direction, PanoramicLens, View};
 pub use pattern::TestPattern;
 pub use render::{AnnulusRenderer, Moment, Pose};
@@ -75,6 +77,11 @@ impl PanoramicCamera {
     /// Turns all lamps up or down: `light` times the world's own.
     pub fn set_light(&mut self, light: f32) {
         self.sensor.set_light(light);
+    }
+
+    /// Lets all lamps flicker; they do not before.
+    pub fn set_flicker(&mut self, flicker: Flicker) {
+        self.sensor.set_flicker(flicker);
     }
 
     /// Takes frame `frame_number` all at one moment (the pose is that of the optic, whose centre is

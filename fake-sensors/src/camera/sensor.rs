@@ -7,6 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::blemish::{BadPixel, Blemishes};
+use super::flicker::Flicker;
 use super::lens::PanoramicLens;
 use super::pattern::TestPattern;
 use super::{HEIGHT, Line, WIDTH};
@@ -107,6 +108,8 @@ pub struct ImageSensor {
     tone_curve: Vec<u8>,
     /// The lamps' strength over that of the world's own.
     light: f32,
+    flicker: Flicker,
+    frame_number: u32,
     /// Light that reaches each pixel: the lens's fall-off, and dust.
     shading: Vec<f32>,
     blemishes: Blemishes,
@@ -131,6 +134,8 @@ impl ImageSensor {
             tuning: ImageTuning::default(),
             tone_curve: ImageTuning::default().tone_curve(),
             light: 1.0,
+            flicker: Flicker::NONE,
+            frame_number: 0,
             shading,
             blemishes,
             noise: ChaCha8Rng::seed_from_u64(seed),
@@ -151,8 +156,14 @@ impl ImageSensor {
         self.light = light;
     }
 
-    /// Begins frame `frame_number`: its noise.
+    /// Lets all lamps flicker; they do not before.
+    pub fn set_flicker(&mut self, flicker: Flicker) {
+        self.flicker = flicker;
+    }
+
+    /// Begins frame `frame_number`: its noise, and where the lamps' flicker stands.
     pub fn begin_frame(&mut self, frame_number: u32) {
+        self.frame_number = frame_number;
         let mut noise = self.noise.clone();
         noise.set_stream(FIRST_STREAM + u64::from(frame_number));
         noise.fill_bytes(self.noise_bits.as_flattened_mut());
@@ -169,8 +180,8 @@ impl ImageSensor {
             &self.shading[pixels.clone()],
             &self.noise_bits[pixels.clone()],
         );
-        let electrons_per_radiance =
-            self.light * FULL_WELL_E * f32::from(exposure.lines) / WHITE_LINES;
+        let light = self.light * self.flicker.share(self.frame_number, row, exposure.lines);
+        let electrons_per_radiance = light * FULL_WELL_E * f32::from(exposure.lines) / WHITE_LINES;
         let top = CONVERTER_LEVELS - 1;
         let levels_per_electron = exposure.gain * top as f32 / FULL_WELL_E;
         let (pixels, _) = line.as_chunks_mut::<2>();

@@ -306,3 +306,41 @@ fn test_pictures_know_no_light_no_noise_and_no_blemish() {
         assert!(lines.iter().all(|line| line == &lines[0]));
     }
 }
+
+/// The greatest difference between a row's mean luma above black and that under steady light, as a share.
+fn banding(lines: u16) -> f32 {
+    let mut camera = camera(1);
+    let exposure = Exposure { lines, gain: 1.0 };
+    let mut rows = |flicker| {
+        camera.set_flicker(flicker);
+        let frame = *camera.expose(&at(0.0), exposure, 3);
+        let (rows, _) = frame.as_chunks::<LINE_BYTES>();
+        // Rows that cross the ring.
+        let mean_of = |row: &[u8; LINE_BYTES]| {
+            let luma: Vec<f32> = row
+                .iter()
+                .skip(1)
+                .step_by(2)
+                .map(|l| f32::from(*l))
+                .collect();
+            mean(&luma) - 12.0
+        };
+        rows[10..86].iter().map(mean_of).collect::<Vec<f32>>()
+    };
+    let steady = rows(Flicker::NONE);
+    let lamps = rows(Flicker {
+        depth: 0.3,
+        period_lines: 134.6,
+    });
+    let pairs = lamps.iter().zip(&steady);
+    pairs
+        .map(|(lit, usual)| (lit / usual - 1.0).abs())
+        .fold(0.0, f32::max)
+}
+
+#[test]
+fn flickering_lamps_band_the_image_unless_it_is_exposed_for_whole_periods() {
+    assert!(banding(67) > 0.15);
+    assert!(banding(202) > 0.04);
+    assert!(banding(135) < 0.01);
+}
