@@ -45,6 +45,6 @@ fn read() -> Result<LensCalibration, RecordError> {
     }
     // SAFETY: the linker script puts the page into flash that nothing else lies in; it can be read
     // whatever it holds, and nobody programs flash while this program runs.
-    let page = unsafe { &*(&raw const PAGE) };
+    let page = unsafe { &PAGE };
     record::decode(page, &FRAME_LAYOUT)
 }

@@ -4,10 +4,11 @@ use core::f32::consts::TAU;
 
 use fake_sensors::camera::{Exposure, Moment, PanoramicCamera, PanoramicLens, Pose};
 use fake_sensors::world::World;
+use link::{Command, Message, Mode, Record, State};
 use nalgebra::{UnitQuaternion, Vector3};
 use nav::horizon::BEARINGS;
-use nav::{Derotation, Horizon, LensCalibration, PanoramaMap, Tilt};
-use pilot::{FRAME_LAYOUT, Frame, Parameters, Pilot};
+use nav::{Derotation, Horizon, LensCalibration, PanoramaMap, Snapshot, Spectrum, Tilt};
+use pilot::{FRAME_LAYOUT, Frame, Outbox, Parameters, Pilot};
 
 const TILT_RAD: f32 = 15.0 * TAU / 360.0;
 const HEADING_RAD: f32 = 0.6;
@@ -79,12 +80,51 @@ fn derotated_at_15_degrees_the_horizon_resembles_the_level_one_far_more() {
     }
 }
 
+/// The snapshot that a pilot stores who has heard of a tilt before it sees the frame.
+fn remembered(parameters: &Parameters, frame: &Frame, tilt: Tilt) -> Snapshot {
+    let mut pilot = Pilot::new(parameters).expect("the default lens");
+    let mut outbox = Outbox::new();
+    let state = Message::State(State {
+        phi: tilt.roll_rad,
+        theta: tilt.pitch_rad,
+        psi: -HEADING_RAD,
+        ..State::default()
+    });
+    let record = Message::Command(Command {
+        command: Mode::Record(Record::SEQUENCE_WITH_ODOMETRY).byte(),
+        ..Command::default()
+    });
+    pilot.on_message(0, &state, &mut outbox);
+    pilot.on_frame(frame);
+    pilot.on_message(50, &record, &mut outbox);
+    outbox.clear();
+    pilot.on_message(100, &state, &mut outbox);
+    let snapshots = pilot.navigator().route().snapshots();
+    snapshots.first().expect("a snapshot").snapshot
+}
+
 #[test]
-fn derotation_is_off_by_default_and_a_parameter_of_the_pilot() {
-    const { assert!(!Parameters::DEFAULT.derotate) };
-    let parameters = Parameters {
+fn a_pilot_that_derotates_remembers_the_level_view_by_the_tilt_that_state_tells() {
+    let world = World::named("office", 1).expect("a world");
+    let mut camera = PanoramicCamera::new(world, &PanoramicLens::default(), 1);
+    let tilt = Tilt {
+        roll_rad: TILT_RAD,
+        pitch_rad: -0.5 * TILT_RAD,
+    };
+    let seen = frame(&mut camera, tilt);
+    let derotation = Derotation::new(&LensCalibration::DEFAULT, &FRAME_LAYOUT).expect("a lens");
+    let level = derotation.horizon(&seen, HEADING_RAD, tilt);
+    let derotates = Parameters {
         derotate: true,
         ..Parameters::DEFAULT
     };
-    assert!(Pilot::new(&parameters).is_ok());
+    let expected = Snapshot::quantise(&Spectrum::of(&level));
+    assert_eq!(remembered(&derotates, &seen, tilt), expected);
+    // The paper does not derotate, and neither does a pilot that is not told to.
+    let as_it_is = remembered(&Parameters::DEFAULT, &seen, tilt);
+    assert_eq!(
+        as_it_is,
+        remembered(&Parameters::DEFAULT, &seen, Tilt::default())
+    );
+    assert_ne!(as_it_is, expected);
 }
