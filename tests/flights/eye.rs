@@ -3,9 +3,12 @@
 
 use std::path::Path;
 
-use hil::flight::{Flown, fly_native};
+use hil::flight::{FlightError, Flown, fly_emulated, fly_native};
+use hil::image;
 use hil::record::LogLine;
-use hil::scenario::{Conditions, Homing, LensPage, Route, Scenario, Spacing};
+use hil::scenario::{
+    CameraTrouble, Conditions, Homing, LensPage, Route, Scenario, Spacing, WireFault,
+};
 use nav::LensCalibration;
 use tests::Budgets;
 
@@ -94,4 +97,67 @@ fn a_drone_comes_home_with_a_lens_record_that_is_a_pixel_off_either_way() {
             "{said:?}"
         );
     }
+}
+
+fn corner(conditions: Conditions) -> Scenario {
+    Scenario {
+        route: Route::Corner,
+        world: "arena-panels".to_owned(),
+        seed: 1,
+        spacing: Spacing::from_metres(2.0).expect("a spacing"),
+        homing: Homing::Both,
+        conditions,
+    }
+}
+
+/// A corner is flown out in ten seconds, and homed along after that.
+fn troubled(fault: WireFault) -> Conditions {
+    Conditions {
+        camera: Some(CameraTrouble {
+            fault,
+            from_ms: 15_000,
+            for_ms: 2_000,
+        }),
+        ..Conditions::default()
+    }
+}
+
+#[test]
+fn a_drone_comes_home_whatever_happens_to_its_camera_for_two_seconds() {
+    let elf = image::build(&|line| eprintln!("{line}")).expect("the firmware builds");
+    let elf = std::fs::read(elf).expect("the image");
+    for (fault, name) in [
+        (WireFault::LostVsync, "no vsync"),
+        (WireFault::StuckVsync, "no vsync"),
+        (WireFault::LostHsync, "no signal"),
+        (WireFault::ShortLine, "short line"),
+        (WireFault::ExtraBytes, "extra bytes"),
+        (WireFault::StoppedClock, "no signal"),
+        (WireFault::Unplugged, "no signal"),
+    ] {
+        let flown = fly_emulated(&corner(troubled(fault)), &elf, &mut |_| ()).expect("a flight");
+        assert!(
+            flown.summary.completed,
+            "{fault}: {}",
+            flown.summary.outcome
+        );
+        Budgets::load().hold("home_error_m", flown.summary.home_error_m);
+        let told = format!("capture fault: {name}");
+        let log = &flown.recording.log;
+        assert!(log.iter().any(|line| line.text == told), "{fault}: {told}");
+        // Two seconds at 25.6 frames a second, and not one more than the recovery takes.
+        let dark = |frame: &&hil::record::FrameMark| (15.1..17.0).contains(&frame.t);
+        let frames = &flown.recording.frames;
+        assert_eq!(frames.iter().filter(dark).count(), 0, "{fault}");
+        assert!(
+            frames.iter().any(|frame| (17.0..17.25).contains(&frame.t)),
+            "{fault}"
+        );
+    }
+}
+
+#[test]
+fn a_board_without_wires_refuses_their_faults() {
+    let refused = fly_native(&corner(troubled(WireFault::Unplugged)), &mut |_| ());
+    assert!(matches!(refused, Err(FlightError::NoWires)));
 }

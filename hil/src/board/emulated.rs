@@ -11,8 +11,9 @@ use sensor::tcm8230::SETTLING_FRAMES;
 use super::camera::Camera;
 use super::firmware_log;
 use super::probe::Probe;
+use super::sabotage::Sabotaged;
 use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog};
-use crate::scenario::LensPage;
+use crate::scenario::{CameraTrouble, LensPage};
 
 /// The crystal on the flight board, hertz.
 const CRYSTAL_HZ: u32 = 8_000_000;
@@ -98,7 +99,9 @@ impl Firmware {
 
 /// An STM32F407 with a camera, in flight.
 pub struct Emulated<'f> {
-    machine: Machine<Camera>,
+    machine: Machine<Sabotaged>,
+    /// What is to happen to the camera's wires.
+    trouble: Option<CameraTrouble>,
     probe: Probe<'f>,
     log: Vec<FirmwareLog>,
     traced_cycles: Vec<u32>,
@@ -107,6 +110,8 @@ pub struct Emulated<'f> {
     vision: u32,
     /// How far the flight has come on the board's clock.
     clock: Nanos,
+    /// Milliseconds of flight.
+    elapsed_ms: u64,
     /// Cycles asleep and in all when the flight began: the boot is not part of its load.
     epoch: (u64, u64),
 }
@@ -115,29 +120,52 @@ impl<'f> Emulated<'f> {
     /// Switches a board on and waits until its camera sends; then the flight's time is zero, and
     /// stands where the native board's does: [`CAMERA_LEAD_NS`] after the start of the first frame.
     pub fn boot(firmware: &'f Firmware, camera: Camera) -> Result<Self, BoardError> {
+        let camera = Sabotaged::new(camera, None);
         let vision = firmware.address(VISION_FUNCTION)?;
         let mut machine = firmware.machine(camera)?;
         machine.trace_calls(vision);
         let mut board = Self {
             probe: firmware.probe()?,
+            trouble: None,
             log: Vec::new(),
             traced_cycles: Vec::new(),
             frames_logged: 0,
             vision,
             clock: Nanos(0),
+            elapsed_ms: 0,
             epoch: (0, 0),
             machine,
         };
-        if board
-            .machine
-            .run_while(FIRST_FRAME_TIMEOUT, |camera| camera.frames_started() == 0)?
-        {
+        if board.machine.run_while(FIRST_FRAME_TIMEOUT, |wires| {
+            wires.camera().frames_started() == 0
+        })? {
             return Err(board.no_frame());
         }
         board.clock = board.machine.now() + Nanos(CAMERA_LEAD_NS);
         board.machine.run_until(board.clock)?;
         board.epoch = (board.machine.idle_cycles(), board.machine.cycles());
         Ok(board)
+    }
+
+    /// Lets something happen to the camera's wires in the course of the flight.
+    #[must_use]
+    pub fn with_trouble(self, trouble: Option<CameraTrouble>) -> Self {
+        Self { trouble, ..self }
+    }
+
+    /// Begins and ends what is to happen in the millisecond that begins now.
+    fn disturb(&mut self) {
+        if let Some(trouble) = self.trouble {
+            let (now, elapsed_ms) = (self.clock, self.elapsed_ms);
+            let wires = self.machine.wiring_mut();
+            if elapsed_ms == trouble.from_ms {
+                wires.begin(now, trouble.fault.into());
+            }
+            if elapsed_ms == trouble.until_ms() {
+                wires.end(now);
+            }
+        }
+        self.elapsed_ms += 1;
     }
 
     fn no_frame(&mut self) -> BoardError {
@@ -196,7 +224,8 @@ impl Board for Emulated<'_> {
 
     fn look_from(&mut self, pose: Pose) {
         let now_ns = self.clock.0;
-        self.machine.wiring_mut().look_from(now_ns, pose);
+        let camera = self.machine.wiring_mut().camera_mut();
+        camera.look_from(now_ns, pose);
     }
 
     fn transmit(&mut self, bytes: &[u8]) {
@@ -204,6 +233,7 @@ impl Board for Emulated<'_> {
     }
 
     fn advance(&mut self) -> Result<(), BoardError> {
+        self.disturb();
         self.clock = self.clock + MILLISECOND;
         self.machine.run_until(self.clock)?;
         self.collect_calls();
@@ -228,7 +258,7 @@ impl Board for Emulated<'_> {
     fn finish(&mut self) -> Result<BoardFigures, BoardError> {
         // A frame may have been captured this very moment: it is processed before the next ends.
         for _ in 0..FRAME_GRACE_MS {
-            if self.machine.wiring().frames_sent() > self.traced_cycles.len() as u64 {
+            if self.machine.wiring().camera().frames_sent() > self.traced_cycles.len() as u64 {
                 self.advance()?;
             }
         }
@@ -238,7 +268,7 @@ impl Board for Emulated<'_> {
         let idle = self.machine.idle_cycles() - idle;
         let all = self.machine.cycles() - all;
         Ok(BoardFigures {
-            frames_sent: self.machine.wiring().frames_sent(),
+            frames_sent: self.machine.wiring().camera().frames_sent(),
             frames_captured: captured.saturating_sub(u64::from(SETTLING_FRAMES)),
             frames_processed: self.traced_cycles.len() as u64,
             traced_cycles: std::mem::take(&mut self.traced_cycles),

@@ -6,9 +6,10 @@
 use emulator::time::Nanos;
 use emulator::wiring::{CameraSignal, Pin, Wiring};
 use fake_sensors::camera::tcm8230::Edge;
-use fake_sensors::camera::{Frame, LINE_BYTES};
+use fake_sensors::camera::{Frame, HEIGHT, LINE_BYTES};
 
 use super::camera::Camera;
+use crate::scenario::WireFault;
 
 /// What is wrong with the wires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +44,32 @@ pub enum Sabotage {
     /// registers, and wants a reset when it is back.
     Unplugged,
 }
+
+/// A fault of a flight, as it is done to the wires.
+impl From<WireFault> for Sabotage {
+    fn from(fault: WireFault) -> Self {
+        match fault {
+            WireFault::LostVsync => Self::VsyncLow,
+            WireFault::StuckVsync => Self::VsyncHigh,
+            WireFault::LostHsync => Self::HsyncLow,
+            WireFault::ShortLine => Self::LineBytes {
+                first: SHORT_LINE,
+                last: SHORT_LINE,
+                bytes: LINE_BYTES - 4,
+            },
+            WireFault::ExtraBytes => Self::LineBytes {
+                first: 0,
+                last: usize::MAX,
+                bytes: LINE_BYTES + 8,
+            },
+            WireFault::StoppedClock => Self::ClockStopped,
+            WireFault::Unplugged => Self::Unplugged,
+        }
+    }
+}
+
+/// The line that is short in [`WireFault::ShortLine`]: in the middle of the image.
+const SHORT_LINE: usize = HEIGHT / 2;
 
 /// A frame as the camera meant it.
 #[derive(Clone, Debug)]
@@ -100,6 +127,11 @@ impl Sabotaged {
     /// The camera itself.
     pub fn camera(&self) -> &Camera {
         &self.camera
+    }
+
+    /// The same, to move it.
+    pub fn camera_mut(&mut self) -> &mut Camera {
+        &mut self.camera
     }
 
     /// Frames whose end the camera has sent since power-on, whatever became of them.

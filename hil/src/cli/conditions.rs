@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use autopilot::app::Quirks;
-use clap::Args;
+use clap::{Args, ValueEnum};
 
-use crate::scenario::{Conditions, Correction, LensPage, Quirk, Wind};
+use crate::scenario::{CameraTrouble, Conditions, Correction, LensPage, Quirk, Wind, WireFault};
 
 /// The wind of the strongest gale, m/s (Beaufort 12 begins at 32.7 m/s).
 const STRONGEST_WIND_M_S: f64 = 32.0;
@@ -36,6 +36,11 @@ pub struct ConditionArguments {
     /// All lamps' strength over that of the world's own, from 0.001 to 1000: the firmware's first exposure suits 1
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = parse_light, hide_default_value = true)]
     light: f32,
+    /// Something wrong with the camera's wires, from a second of the flight on; after a comma, for how many seconds
+    /// [default: 0.5]; the emulated board has wires. NAME: lost-vsync, stuck-vsync, lost-hsync, short-line, extra-bytes,
+    /// stopped-clock or unplugged
+    #[arg(long, value_name = "NAME@SECOND[,SECONDS]", value_parser = parse_trouble)]
+    camera_fault: Option<CameraTrouble>,
     /// The lens record in the board's flash, as `hil calibrate` writes it [default: none]
     #[arg(long, value_name = "FILE", value_parser = parse_lens)]
     lens: Option<LensPage>,
@@ -59,6 +64,7 @@ impl ConditionArguments {
             correction: self.correction,
             wind: self.wind,
             light: self.light,
+            camera: self.camera_fault,
             lens: self.lens,
         }
     }
@@ -89,6 +95,31 @@ fn parse_time(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|seconds: &f64| seconds.is_finite() && *seconds >= 0.0)
         .ok_or_else(|| "a time in seconds from the start of the flight".to_owned())
+}
+
+fn parse_trouble(text: &str) -> Result<CameraTrouble, String> {
+    let form = || "NAME@SECOND or NAME@SECOND,SECONDS, as in unplugged@100,2".to_owned();
+    let (name, times) = text.split_once('@').ok_or_else(form)?;
+    let fault = WireFault::from_str(name, false).map_err(|_| {
+        let names = WireFault::value_variants().iter();
+        let names =
+            names.filter_map(|fault| Some(fault.to_possible_value()?.get_name().to_owned()));
+        format!(
+            "no fault `{name}`: {}",
+            names.collect::<Vec<_>>().join(", ")
+        )
+    })?;
+    let (from, time) = times.split_once(',').unwrap_or((times, ""));
+    let in_ms = |text: &str| parse_time(text).map(|seconds| (1_000.0 * seconds) as u64);
+    let for_ms = match time {
+        "" => CameraTrouble::USUAL_MS,
+        time => in_ms(time)?,
+    };
+    Ok(CameraTrouble {
+        fault,
+        from_ms: in_ms(from)?,
+        for_ms,
+    })
 }
 
 fn parse_lens(text: &str) -> Result<LensPage, String> {

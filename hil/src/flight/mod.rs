@@ -47,6 +47,9 @@ pub enum FlightError {
     /// There is no such world, or its file is bad.
     #[error(transparent)]
     World(#[from] WorldError),
+    /// A fault of the camera's wires, and a board that has none.
+    #[error("the native board has no camera wires: a camera fault wants the emulator")]
+    NoWires,
     /// The board cannot go on.
     #[error(transparent)]
     Board(#[from] BoardError),
@@ -86,6 +89,9 @@ pub fn fly_native(
     scenario: &Scenario,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Flown, FlightError> {
+    if scenario.conditions.camera.is_some() {
+        return Err(FlightError::NoWires);
+    }
     let started = Instant::now();
     let record = scenario.conditions.lens.map(|page| page.lens());
     let lens = record.unwrap_or(Err(RecordError::Empty));
@@ -111,7 +117,8 @@ pub fn fly_emulated(
     let started = Instant::now();
     let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
     let world = World::open(&scenario.world, scenario.seed)?;
-    let mut board = Emulated::boot(&firmware, camera(scenario, &world, Tcm8230::default()))?;
+    let mut board = Emulated::boot(&firmware, camera(scenario, &world, Tcm8230::default()))?
+        .with_trouble(scenario.conditions.camera);
     fly(
         scenario,
         &world,

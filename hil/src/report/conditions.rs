@@ -34,6 +34,14 @@ pub fn in_words(conditions: &Conditions) -> Option<String> {
         let factor = number::trimmed(conditions.light.into(), 3);
         words.push(format!("light {factor} times the world's own"));
     }
+    if let Some(trouble) = conditions.camera {
+        words.push(format!(
+            "camera {} at {} s for {} s",
+            trouble.fault,
+            number::trimmed(trouble.from_ms as f64 / 1_000.0, 3),
+            number::trimmed(trouble.for_ms as f64 / 1_000.0, 3)
+        ));
+    }
     if conditions.lens.is_some() {
         words.push("a lens record in the flash".into());
     }
@@ -55,7 +63,7 @@ fn quirks(conditions: &Conditions) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{LensPage, Wind};
+    use crate::scenario::{CameraTrouble, LensPage, Wind, WireFault};
 
     #[test]
     fn an_undisturbed_flight_has_no_conditions() {
@@ -73,6 +81,11 @@ mod tests {
                 turbulence: 0.2,
             }),
             light: 0.05,
+            camera: Some(CameraTrouble {
+                fault: WireFault::StuckVsync,
+                from_ms: 12_500,
+                for_ms: CameraTrouble::USUAL_MS,
+            }),
             lens: Some(LensPage::of(&nav::LensCalibration::DEFAULT)),
             ..Conditions::default()
         };
@@ -84,6 +97,7 @@ mod tests {
             "wind 1.5 m/s, turbulence 20 %",
             "light 0.05 times the world's own",
             "a lens record in the flash",
+            "camera stuck-vsync at 12.5 s for 0.5 s",
         ] {
             assert!(words.contains(part), "{part}: {words}");
         }

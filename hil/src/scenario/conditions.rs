@@ -4,7 +4,7 @@ use autopilot::app::{CorrectionSd, Quirks};
 use clap::ValueEnum;
 use serde::{Serialize, Serializer};
 
-use super::LensPage;
+use super::{CameraTrouble, LensPage};
 
 /// Nothing out of the ordinary, by default.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -22,6 +22,9 @@ pub struct Conditions {
     pub wind: Option<Wind>,
     /// All lamps' strength over that of the world's own, which the firmware's first exposure suits.
     pub light: f32,
+    /// Something wrong with the camera's wires for a while; an emulated board has wires.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraTrouble>,
     /// What the flash page of the lens record holds; none where it is erased.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lens: Option<LensPage>,
@@ -36,6 +39,7 @@ impl Default for Conditions {
             correction: Correction::default(),
             wind: None,
             light: 1.0,
+            camera: None,
             lens: None,
         }
     }

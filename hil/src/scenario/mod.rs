@@ -2,6 +2,7 @@
 
 mod conditions;
 mod lens;
+mod wire_fault;
 
 use autopilot::app;
 use clap::ValueEnum;
@@ -9,6 +10,7 @@ use link::{Record, WorldPoint};
 
 pub use conditions::{Conditions, Correction, Quirk, Wind};
 pub use lens::{LensFileError, LensPage};
+pub use wire_fault::{CameraTrouble, WireFault};
 
 /// The scripted way out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
