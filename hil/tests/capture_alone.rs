@@ -9,6 +9,7 @@ use hil::board::FirmwareLog;
 use hil::board::camera::Camera;
 use hil::board::emulated::Firmware;
 use hil::board::native::EXTCLK_HZ;
+use hil::board::sabotage::Sabotaged;
 use hil::image;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -16,7 +17,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 const PATIENCE: Nanos = Nanos::from_millis(1_500);
 
 /// A camera that sends since time zero.
-fn camera() -> Camera {
+fn camera() -> Sabotaged {
     let chip = Tcm8230::streaming(0, EXTCLK_HZ, 135, 1.0);
     let world = World::named("arena", 1).expect("a world");
     let optics = PanoramicCamera::new(world, &PanoramicLens::default(), 1);
@@ -24,7 +25,7 @@ fn camera() -> Camera {
         position_m: Vector3::new(0.0, 0.0, 1.0),
         attitude: UnitQuaternion::identity(),
     };
-    Camera::new(chip, optics, pose)
+    Sabotaged::new(Camera::new(chip, optics, pose), None)
 }
 
 /// What the image said, and how many frames the interface had taken whole when it said it.

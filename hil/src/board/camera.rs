@@ -1,9 +1,9 @@
 //! The camera of a rig: image sensor, lens and world, from a pose to lines on the bus.
 
 use emulator::time::Nanos;
-use emulator::wiring::{CameraSignal, Pin, Wiring};
+use emulator::wiring::Pin;
 use fake_sensors::camera::tcm8230::{Edge, Tcm8230};
-use fake_sensors::camera::{Frame, HEIGHT, LINE_BYTES, PanoramicCamera, Pose};
+use fake_sensors::camera::{Frame, HEIGHT, PanoramicCamera, Pose};
 use sensor::tcm8230::SETTLING_FRAMES;
 
 use super::poses::Poses;
@@ -124,30 +124,35 @@ impl Camera {
     }
 }
 
-/// The camera soldered to an emulated board.
-impl Wiring for Camera {
-    fn pin_changed(&mut self, now: Nanos, pin: Pin, high: bool) {
+/// What the board does to the camera's inputs, in the words of the emulator's wiring.
+impl Camera {
+    /// A pin of the board changed its level.
+    pub fn pin_changed(&mut self, now: Nanos, pin: Pin, high: bool) {
         if pin == RESET {
             self.chip.set_reset(now.0, high);
         }
     }
 
-    fn clock_changed(&mut self, now: Nanos, pin: Pin, hertz: Option<f64>) {
+    /// A clock of the board changed its frequency (none: stopped), hertz.
+    pub fn clock_changed(&mut self, now: Nanos, pin: Pin, hertz: Option<f64>) {
         if pin == EXTCLK {
             self.chip
                 .set_clock(now.0, hertz.map(|hertz| hertz.round() as u32));
         }
     }
 
-    fn i2c_start(&mut self, now: Nanos, bus: u8, address: u8, read: bool) -> bool {
+    /// A start condition and an address. True: the sensor acknowledged.
+    pub fn i2c_start(&mut self, now: Nanos, bus: u8, address: u8, read: bool) -> bool {
         bus == I2C_BUS && self.chip.i2c_start(now.0, address, read)
     }
 
-    fn i2c_write(&mut self, now: Nanos, bus: u8, byte: u8) -> bool {
+    /// A byte for the sensor. True: acknowledged.
+    pub fn i2c_write(&mut self, now: Nanos, bus: u8, byte: u8) -> bool {
         bus == I2C_BUS && self.chip.i2c_write(now.0, byte)
     }
 
-    fn i2c_read(&mut self, now: Nanos, bus: u8) -> u8 {
+    /// A byte from the sensor; the pulled-up line where it is not on this bus.
+    pub fn i2c_read(&mut self, now: Nanos, bus: u8) -> u8 {
         if bus == I2C_BUS {
             self.chip.i2c_read(now.0)
         } else {
@@ -155,31 +160,23 @@ impl Wiring for Camera {
         }
     }
 
-    fn i2c_stop(&mut self, now: Nanos, bus: u8) {
+    /// A stop condition.
+    pub fn i2c_stop(&mut self, now: Nanos, bus: u8) {
         if bus == I2C_BUS {
             self.chip.i2c_stop(now.0);
         }
     }
 
-    fn camera_next(&self) -> Option<Nanos> {
+    /// When [`Self::take_edge`] has the next edge; none while the sensor is silent.
+    pub fn next_edge(&self) -> Option<Nanos> {
         self.chip.next_edge().map(Nanos)
-    }
-
-    fn camera_signal(&mut self, now: Nanos) -> Option<CameraSignal<'_>> {
-        Some(match self.take_edge(now.0)? {
-            Edge::FrameStart { .. } => CameraSignal::FrameStart,
-            Edge::Line(line) => {
-                CameraSignal::Line(&self.frame()[line * LINE_BYTES..][..LINE_BYTES])
-            }
-            Edge::FrameEnd => CameraSignal::FrameEnd,
-        })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use fake_sensors::camera::PanoramicLens;
     use fake_sensors::camera::tcm8230::{frame_period_ns, line_offset_ns};
+    use fake_sensors::camera::{LINE_BYTES, PanoramicLens};
     use fake_sensors::world::World;
     use nalgebra::{UnitQuaternion, Vector3};
 

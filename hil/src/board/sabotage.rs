@@ -297,7 +297,7 @@ impl Wiring for Sabotaged {
     }
 
     fn camera_next(&self) -> Option<Nanos> {
-        let next = self.camera.camera_next();
+        let next = self.camera.next_edge();
         match (self.change_due, next) {
             (Some(due), Some(next)) => Some(due.min(next)),
             (due, next) => due.or(next),
