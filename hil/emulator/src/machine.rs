@@ -5,7 +5,7 @@ mod stack;
 
 pub use fault::{Fault, Reason};
 
-use crate::core::{Call, Core, Cycle, Exit};
+use crate::core::{Call, Core, Cycle, CycleModel, Exit};
 use crate::image::{Image, ImageError};
 use crate::memory::Memory;
 use crate::soc::{DcmiCounters, FlashTiming, Lines, NEVER, ResetCause, Soc, UsartCounters};
@@ -25,6 +25,8 @@ pub struct Machine<W> {
     idle_cycles: Cycle,
     lines: Lines,
     flash_timing: FlashTiming,
+    /// How fetches meet the flash, whatever the firmware programs.
+    assumed_flash: Option<FlashTiming>,
 }
 
 impl<W: Wiring> Machine<W> {
@@ -44,6 +46,7 @@ impl<W: Wiring> Machine<W> {
             image: image.clone(),
             idle_cycles: 0,
             lines: Lines::default(),
+            assumed_flash: None,
         })
     }
 
@@ -87,10 +90,23 @@ impl<W: Wiring> Machine<W> {
         self.flash_timing = self.soc.flash_timing();
     }
 
+    /// Assumes another time of instructions than the default one from now on.
+    pub fn set_cycle_model(&mut self, model: CycleModel) {
+        self.core.set_cycle_model(model);
+    }
+
+    /// Assumes that fetches meet the flash like this, whatever the firmware programs; none undoes it.
+    /// It takes effect when the machine runs on.
+    pub fn assume_flash_timing(&mut self, timing: Option<FlashTiming>) {
+        self.assumed_flash = timing;
+    }
+
     /// Brings the chip to the core's present, and the core's inputs up to date.
     fn synchronise(&mut self) {
         self.soc.advance(&mut self.memory, self.core.cycles());
-        let timing = self.soc.flash_timing();
+        let timing = self
+            .assumed_flash
+            .unwrap_or_else(|| self.soc.flash_timing());
         if timing != self.flash_timing {
             self.flash_timing = timing;
             self.core.set_flash_timing(

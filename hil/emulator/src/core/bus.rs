@@ -43,4 +43,10 @@ pub trait Bus {
         width: Width,
         value: u32,
     ) -> Result<(), BusFault>;
+
+    /// Cycles that the access which was just made at `now` keeps the core waiting, beyond those of
+    /// one to RAM.
+    fn delay(&mut self, _now: Cycle, _address: u32, _write: bool) -> Cycle {
+        0
+    }
 }

@@ -6,6 +6,7 @@
 
 use super::cycles;
 use super::decode::{Place, decode};
+use super::hazards::Before;
 use super::instruction::{Instruction, Operation};
 use crate::memory::{FLASH, FLASH_BYTES, Memory};
 
@@ -22,6 +23,8 @@ pub(super) struct CodeCache {
     places: Vec<u32>,
     /// First instructions of functions whose calls are recorded, and the places they return to.
     traced: Vec<u32>,
+    /// Cycles of a pipeline refill.
+    refill: u8,
 }
 
 impl CodeCache {
@@ -30,16 +33,30 @@ impl CodeCache {
             instructions: vec![Instruction::UNDECODED],
             places: vec![0; FLASH_BYTES / 2],
             traced: Vec::new(),
+            refill: cycles::REFILL,
         }
     }
 
-    /// Forgets everything but what is traced.
+    /// Forgets everything but what is traced, and what a refill costs.
     pub fn clear(&mut self) {
         let traced = std::mem::take(&mut self.traced);
         *self = Self {
             traced,
+            refill: self.refill,
             ..Self::new()
         };
+    }
+
+    /// What refilling the pipeline costs, cycles.
+    #[inline(always)]
+    pub fn refill(&self) -> u8 {
+        self.refill
+    }
+
+    /// What refilling the pipeline costs from now on.
+    pub fn set_refill(&mut self, refill: u8) {
+        self.refill = refill;
+        self.clear();
     }
 
     /// Where the instruction at `pc` is, or a sentinel.
@@ -70,7 +87,7 @@ impl CodeCache {
 
     /// Decodes from `pc` on until the code leaves for good. This puts the conditions of IT blocks on
     /// the instructions inside, so that the interpreter never sees an IT block of the flash, and
-    /// gives overlapping loads their cost. False: `pc` is not in flash.
+    /// gives each instruction its cost behind the one before. False: `pc` is not in flash.
     #[cold]
     #[inline(never)]
     pub fn decode_run(&mut self, memory: &Memory, pc: u32) -> bool {
@@ -79,7 +96,7 @@ impl CodeCache {
         }
         let mut address = pc;
         let mut block = ItBlock::default();
-        let mut behind_transfer = false;
+        let mut before = Before::default();
         for count in 0.. {
             let inside = block.is_open();
             if !inside && (count >= LONGEST_RUN || self.locate(address) != NOWHERE) {
@@ -95,11 +112,10 @@ impl CodeCache {
                 block = ItBlock::new(instruction.immediate);
                 instruction.operation = Operation::Nop;
             }
-            let transfers = instruction.is_pipelined_transfer();
-            if transfers && behind_transfer && instruction.cycles == cycles::LOAD {
-                instruction.cycles = cycles::PIPELINED_LOAD;
+            instruction.cycles = before.cost(&instruction);
+            if instruction.refills() {
+                instruction.cycles = instruction.cycles - cycles::REFILL + self.refill;
             }
-            behind_transfer = transfers;
             if self.traced.contains(&address) {
                 instruction.guard = instruction.guard.with_trace();
             }

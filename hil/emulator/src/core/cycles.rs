@@ -1,9 +1,11 @@
 //! What instructions cost in cycles, where it is not one (ARM DDI0439 §3.3).
 //!
-//! Left out: wait states of the peripheral buses, contention with DMA, the penalty of unaligned
-//! accesses, and floating-point results that are used at once.
+//! Left out: contention with DMA, the penalty of unaligned accesses, and what integer instructions do
+//! while a floating-point division is under way.
 
-/// Refilling the pipeline after a branch: 1 to 3 in the manual, depending on the target's alignment.
+/// Refilling the pipeline after a branch: 1 to 3 in the manual, depending on alignment and width of the
+/// target and on whether the core could guess it. What decoders assume; see
+/// [`CycleModel`](super::CycleModel).
 pub(super) const REFILL: u8 = 2;
 
 /// A taken branch: B, BL, BX, BLX.
@@ -35,6 +37,9 @@ pub(super) const FLOAT_TRANSFER: u8 = 2;
 
 /// Chained and fused multiply-add in floating point.
 pub(super) const FLOAT_MULTIPLY_ADD: u8 = 3;
+
+/// The result of floating-point arithmetic, where the next instruction needs it (§7.2.3).
+pub(super) const FLOAT_RESULT: u8 = 1;
 
 /// VDIV and VSQRT.
 pub(super) const FLOAT_DIVIDE: u8 = 14;

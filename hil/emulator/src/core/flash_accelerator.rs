@@ -128,7 +128,7 @@ pub(super) struct FlashAccelerator {
     data: LineCache<DATA_LINES>,
     /// The line that instructions are fetched from now.
     line: u32,
-    /// Since when.
+    /// Since when the core has it.
     entered: u64,
 }
 
@@ -162,8 +162,12 @@ impl FlashAccelerator {
         pc >> LINE_SHIFT != self.line
     }
 
-    /// The cycles that fetching from a new line takes. The next line in sequence is prefetched while
-    /// the current one executes, so only what is left of the wait states shows.
+    /// The cycles that fetching from a new line takes.
+    ///
+    /// Reading a line takes a cycle and the wait states. After a jump, the cycle is that of the fetch
+    /// itself, which the pipeline's refill pays for. The next line in sequence is read while the current
+    /// one executes, from when the core got that (RM0090 §3.4.2, "Instruction prefetch"): the reads
+    /// follow one another, and what the instructions of a line do not fill shows, that cycle included.
     #[inline(never)]
     pub fn enter_line(&mut self, pc: u32, now: u64) -> u64 {
         let line = pc >> LINE_SHIFT;
@@ -172,16 +176,15 @@ impl FlashAccelerator {
         if self.wait_states == 0 || line >> 16 != FLASH_REGION {
             return 0;
         }
-        let entered = std::mem::replace(&mut self.entered, now);
-        if self.instructions.holds(line) {
-            return 0;
-        }
-        let hidden = if in_sequence && self.prefetch {
-            now - entered
-        } else {
+        let cost = if self.instructions.holds(line) {
             0
+        } else if in_sequence && self.prefetch {
+            (u64::from(self.wait_states) + 1).saturating_sub(now - self.entered)
+        } else {
+            self.wait_states.into()
         };
-        u64::from(self.wait_states).saturating_sub(hidden)
+        self.entered = now + cost;
+        cost
     }
 
     /// The cycles that reading a constant from flash takes beyond those of RAM.
@@ -219,10 +222,21 @@ mod tests {
     #[test]
     fn the_prefetch_hides_the_wait_behind_the_line_before() {
         let mut accelerator = accelerator(true, false);
-        accelerator.enter_line(FLASH, 100);
-        assert_eq!(accelerator.enter_line(FLASH + 16, 103), 2);
-        assert_eq!(accelerator.enter_line(FLASH + 32, 120), 0);
-        assert_eq!(accelerator.enter_line(FLASH + 96, 140), 5);
+        assert_eq!(accelerator.enter_line(FLASH, 100), 5);
+        // Four instructions of 32 bits, and two cycles of the six that the line takes are left.
+        assert_eq!(accelerator.enter_line(FLASH + 16, 109), 2);
+        assert_eq!(accelerator.enter_line(FLASH + 32, 115), 2);
+        assert_eq!(accelerator.enter_line(FLASH + 48, 140), 0);
+        assert_eq!(accelerator.enter_line(FLASH + 112, 160), 5);
+    }
+
+    #[test]
+    fn a_line_in_the_cache_needs_no_prefetch() {
+        let mut accelerator = accelerator(true, true);
+        assert_eq!(accelerator.enter_line(FLASH, 100), 5);
+        assert_eq!(accelerator.enter_line(FLASH + 16, 106), 5);
+        assert_eq!(accelerator.enter_line(FLASH, 120), 0);
+        assert_eq!(accelerator.enter_line(FLASH + 16, 121), 0);
     }
 
     #[test]

@@ -421,16 +421,24 @@ impl Instruction {
         (Operation::LdrLiteral as u8..=Operation::LdrshIndexed as u8).contains(&number)
     }
 
+    /// Whether its cost holds a refill of the pipeline.
+    pub fn refills(&self) -> bool {
+        use Operation::*;
+        match self.operation {
+            B | Bl | Bx | Blx | MovPc | AddPc | Tbb | Tbh | LdrPc | LdrPcRegister => true,
+            Pop | Ldm => self.immediate & 1 << PC != 0,
+            _ => false,
+        }
+    }
+
     /// Whether the instruction behind this one is never reached by falling through.
     pub fn ends_a_run(&self) -> bool {
         use Operation::*;
-        let leaves = match self.operation {
-            B | Bl | Bx | Blx | MovPc | AddPc | Tbb | Tbh | LdrPc | LdrPcRegister => true,
-            Undefined | Unpredictable | Svc | Bkpt | Wfe | Wfi => true,
-            Pop | Ldm => self.immediate & 1 << PC != 0,
-            _ => false,
-        };
-        leaves && !self.guard.is_conditional()
+        let stops = matches!(
+            self.operation,
+            Undefined | Unpredictable | Svc | Bkpt | Wfe | Wfi
+        );
+        (stops || self.refills()) && !self.guard.is_conditional()
     }
 }
 

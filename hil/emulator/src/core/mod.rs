@@ -9,6 +9,7 @@
 mod bus;
 mod calls;
 mod code_cache;
+mod cycle_model;
 mod cycles;
 mod decode;
 mod dwt;
@@ -17,6 +18,7 @@ mod execute;
 mod flags;
 mod flash_accelerator;
 mod fpu;
+mod hazards;
 mod instruction;
 mod nvic;
 mod private_bus;
@@ -27,6 +29,7 @@ mod systick;
 
 pub use bus::{Bus, BusFault, Cycle, Width};
 pub use calls::Call;
+pub use cycle_model::CycleModel;
 pub use stop::{Cause, Exit, Stop};
 
 use crate::memory::Memory;
@@ -151,6 +154,11 @@ impl Core {
     ) {
         self.accelerator
             .set_timing(wait_states, prefetch, icache, dcache);
+    }
+
+    /// What the manuals leave open of an instruction's time; code in RAM keeps the default.
+    pub fn set_cycle_model(&mut self, model: CycleModel) {
+        self.code.set_refill(model.branch_refill());
     }
 
     /// A general register: 0 to 12, 13 the stack pointer in use, 14 the link register, 15 the address

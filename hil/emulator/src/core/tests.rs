@@ -32,6 +32,8 @@ const SPY_RANGE: std::ops::Range<u32> = SPY..SPY + 0x100;
 #[derive(Default)]
 struct Spy {
     accesses: Vec<(Cycle, u32, Width, Option<u32>)>,
+    /// How long each access keeps the core.
+    delay: Cycle,
 }
 
 impl Bus for Spy {
@@ -64,6 +66,10 @@ impl Bus for Spy {
         } else {
             Err(BusFault)
         }
+    }
+
+    fn delay(&mut self, _: Cycle, _: u32, _: bool) -> Cycle {
+        self.delay
     }
 }
 

@@ -5,6 +5,7 @@
 //! somebody looks; so a run does not depend on how it is sliced. What the model does not have stops
 //! the run with a [`Refusal`].
 
+mod bridges;
 mod clocks;
 mod dcmi;
 mod dma;
@@ -39,6 +40,7 @@ use crate::core::Cycle;
 use crate::memory::Memory;
 use crate::time::Nanos;
 use crate::wiring::Wiring;
+use bridges::Bridges;
 use clocks::{ClockTree, Rcc};
 use dcmi::Dcmi;
 use dma::Dma;
@@ -77,6 +79,7 @@ pub struct Soc<W> {
     watchdog: Watchdog,
     debug: Debug,
     outputs: Outputs,
+    bridges: Bridges,
     /// The camera had nothing to say at this instant: it is not asked again before the next.
     camera_silent_at: Option<Nanos>,
     /// The next event, until something may have changed it.
@@ -105,6 +108,7 @@ impl<W: Wiring> Soc<W> {
             watchdog: Watchdog::new(),
             debug: Debug::default(),
             outputs: Outputs::new(),
+            bridges: Bridges::default(),
             camera_silent_at: None,
             next: None,
             refusal: None,

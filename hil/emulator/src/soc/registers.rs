@@ -32,6 +32,10 @@ impl<W: Wiring> Bus for Soc<W> {
         let result = self.write_narrow(memory, now, address, width, value);
         self.settle(result)
     }
+
+    fn delay(&mut self, now: Cycle, address: u32, write: bool) -> Cycle {
+        self.bridges.delay(&self.tree, now, address, write)
+    }
 }
 
 impl<W: Wiring> Soc<W> {

@@ -155,13 +155,15 @@ impl Core {
         }
         self.horizon = 0;
         let fault = Cause::BusFault { address, write };
-        bus.read(memory, self.cycles, address, width)
-            .map(|value| match width {
-                Width::Byte => value & 0xff,
-                Width::Half => value & 0xffff,
-                Width::Word => value,
-            })
-            .or(Err(fault))
+        let value = bus
+            .read(memory, self.cycles, address, width)
+            .or(Err(fault))?;
+        self.cycles += bus.delay(self.cycles, address, write);
+        Ok(match width {
+            Width::Byte => value & 0xff,
+            Width::Half => value & 0xffff,
+            Width::Word => value,
+        })
     }
 
     fn store_register(
@@ -182,12 +184,12 @@ impl Core {
             return self.store_band(memory, bus, bit.word, changed);
         }
         self.horizon = 0;
-        let fault = Cause::BusFault {
-            address,
-            write: true,
-        };
+        let write = true;
+        let fault = Cause::BusFault { address, write };
         bus.write(memory, self.cycles, address, width, value)
-            .or(Err(fault))
+            .or(Err(fault))?;
+        self.cycles += bus.delay(self.cycles, address, write);
+        Ok(())
     }
 
     fn load_band(

@@ -514,7 +514,7 @@ impl Core {
     fn branch_if(&mut self, taken: bool, target: u32) {
         if taken {
             self.registers.pc = target;
-            self.cycles += u64::from(cycles::REFILL);
+            self.cycles += u64::from(self.code.refill());
         }
     }
 }

@@ -220,3 +220,22 @@ fn a_run_stops_at_its_cycle_and_goes_on_from_there() {
     assert_eq!(sliced.core.cycles(), whole.core.cycles());
     assert_eq!(sliced.core.instructions(), whole.core.instructions());
 }
+
+#[test]
+fn a_taken_branch_costs_what_the_model_says() {
+    let program = &[
+        0x2005, // movs r0, #5
+        0x3801, // 1: subs r0, #1
+        0xd1fd, // bne 1b
+        0xe7ff, // b (to the next)
+    ];
+    for refill in 1..=3 {
+        let mut bench = Bench::new(program);
+        let model = CycleModel::default().with_branch_refill(refill);
+        bench.core.set_cycle_model(model.expect("1 to 3"));
+        // Five branches are taken.
+        assert_eq!(bench.run(), 1 + 5 * 2 + 1 + 5 * Cycle::from(refill));
+    }
+    assert_eq!(CycleModel::default().with_branch_refill(0), None);
+    assert_eq!(CycleModel::default().with_branch_refill(4), None);
+}

@@ -405,3 +405,26 @@ fn the_fpu_has_to_be_switched_on_and_other_modes_are_refused() {
     );
     assert_eq!(bench.stop().cause, Cause::FpuMode(round_to_zero));
 }
+
+#[test]
+fn a_result_that_the_next_instruction_needs_costs_a_cycle_but_an_addend_does_not() {
+    const ADD: [u16; 2] = [0xee30, 0x0a81]; // vadd.f32 s0, s1, s2
+    let cases: [(&str, &[u16], Cycle); 8] = [
+        ("vadd.f32 s3, s0, s0", &[0xee70, 0x1a00], 1 + 1),
+        ("vadd.f32 s3, s1, s2", &[0xee70, 0x1a81], 1),
+        ("nop; vadd.f32 s3, s0, s0", &[0xbf00, 0xee70, 0x1a00], 2),
+        ("vmla.f32 s3, s0, s1", &[0xee40, 0x1a20], 3 + 1),
+        ("vmla.f32 s0, s1, s2", &[0xee00, 0x0a81], 3),
+        ("vmov r1, s0", &[0xee10, 0x1a10], 1 + 1),
+        ("vcmp.f32 s0, s1", &[0xeeb4, 0x0a60], 1 + 1),
+        (
+            "vmov.f32 s0, s1; vadd.f32 s3, s0, s0",
+            &[0xeeb0, 0x0a60, 0xee70, 0x1a00],
+            2,
+        ),
+    ];
+    for (name, next, cycles) in cases {
+        let program = [&ADD[..], next].concat();
+        assert_eq!(Bench::new(&program).run(), 1 + cycles, "{name}");
+    }
+}

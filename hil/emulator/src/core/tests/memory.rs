@@ -305,3 +305,15 @@ fn what_must_be_aligned_and_is_not_stops_the_run() {
     .stop();
     assert_eq!(at_peripheral.cause, Cause::Unaligned(SPY + 1));
 }
+
+#[test]
+fn a_slow_bus_keeps_the_core_waiting() {
+    let program = &[
+        0x6801, // ldr r1, [r0]
+        0x6001, // str r1, [r0]
+    ];
+    let quick = Bench::with(&[SPY], program).run();
+    let mut bench = Bench::with(&[SPY], program);
+    bench.bus.delay = 9;
+    assert_eq!(bench.run(), quick + 2 * 9);
+}
