@@ -28,6 +28,7 @@ pub mod derotation;
 pub mod exposure;
 pub mod homing;
 pub mod horizon;
+pub mod methods;
 pub mod navigator;
 pub mod panorama;
 pub mod pose;
