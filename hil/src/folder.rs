@@ -49,16 +49,24 @@ pub fn write(folder: &Path, flown: &Flown) -> io::Result<()> {
     )
 }
 
-/// The log as text, a line each.
+/// The log as text. A record of the firmware's has its own time stamp before it and its log
+/// statement below it, as under probe-rs.
 fn log(recording: &Recording) -> String {
     let mut text = String::new();
     for line in &recording.log {
         // Writing to a String cannot fail.
-        let _ = writeln!(
+        let _ = write!(
             text,
-            "{:10.3} {:<5} {:<8} {}",
-            line.t, line.level, line.source, line.text
+            "{:10.3} {:<5} {:<8} ",
+            line.t, line.level, line.source
         );
+        let _ = match &line.origin {
+            Some(origin) => writeln!(text, "{} {}", origin.stamp, line.text),
+            None => writeln!(text, "{}", line.text),
+        };
+        if let Some(place) = line.place() {
+            let _ = writeln!(text, "{:26}└─ {place}", "");
+        }
     }
     text
 }

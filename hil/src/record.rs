@@ -10,6 +10,8 @@ use nav::snapshot::SNAPSHOT_BYTES;
 use nav::{OdometryVector, StoredSnapshot};
 use serde::Serialize;
 
+use crate::board::origin::{Origin, Place};
+
 /// What the drone was doing; the colours of the paper's Fig. 6 follow from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -152,6 +154,17 @@ pub struct LogLine {
     pub level: String,
     /// What was said.
     pub text: String,
+    /// When by the firmware's clock, and by which of its log statements; none for lines of others
+    /// and of firmware that is not an image.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
+}
+
+impl LogLine {
+    /// The log statement, where it is known.
+    pub fn place(&self) -> Option<&Place> {
+        self.origin.as_ref()?.place.as_ref()
+    }
 }
 
 /// A vertical wall or panel seen from above.

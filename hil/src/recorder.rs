@@ -4,6 +4,7 @@ use autopilot::app;
 use link::{InsCorrection, Map, Message, Source, Vector, WorldPoint, WorldPose};
 
 use crate::board::FirmwareLog;
+use crate::board::origin::Origin;
 use crate::record::{
     CorrectionMark, Deed, FrameMark, LinkDrop, LogLine, OdometryMark, Phase, PlanarPose, Recording,
     Side, SnapshotMark, TrackPoint, VectorMark, What,
@@ -13,6 +14,8 @@ use crate::record::{
 const TRACK_PERIOD_MS: u64 = 100;
 /// Counts of an odometry vector per metre (paper: 0.1 m).
 const COUNTS_PER_M: f64 = 10.0;
+/// Who speaks in the lines of the firmware.
+const FIRMWARE: &str = "firmware";
 
 /// Where things stand at one instant.
 #[derive(Clone, Copy, Debug, Default)]
@@ -80,7 +83,7 @@ impl Recorder {
     pub fn phase(&mut self, now_ms: u64, phase: app::Phase) {
         if phase != self.app_phase {
             self.app_phase = phase;
-            self.line(seconds(now_ms), "app", "info", format!("{phase:?}"));
+            self.line(seconds(now_ms), ("app", None), "info", format!("{phase:?}"));
         }
     }
 
@@ -101,27 +104,27 @@ impl Recorder {
     /// A frame of the link was dropped by its receiver.
     pub fn link_drop(&mut self, now_ms: u64, side: Side, message: String, why: String) {
         let source = match side {
-            Side::Camera => "firmware",
+            Side::Camera => FIRMWARE,
             Side::Autopilot => "app",
         };
-        self.drop_frame(now_ms, source, side, message, why);
+        self.drop_frame(now_ms, (source, None), side, message, why);
     }
 
     /// A frame of the link never got to this side.
     pub fn link_loss(&mut self, now_ms: u64, side: Side, message: String, why: String) {
-        self.drop_frame(now_ms, "rig", side, message, why);
+        self.drop_frame(now_ms, ("rig", None), side, message, why);
     }
 
     fn drop_frame(
         &mut self,
         now_ms: u64,
-        source: &'static str,
+        speaker: (&'static str, Option<Origin>),
         side: Side,
         message: String,
         why: String,
     ) {
         let t = seconds(now_ms);
-        self.line(t, source, "warn", format!("link dropped {message}: {why}"));
+        self.line(t, speaker, "warn", format!("link dropped {message}: {why}"));
         self.recording.link_drops.push(LinkDrop {
             t,
             side,
@@ -132,7 +135,7 @@ impl Recorder {
 
     /// What the rig itself has to say.
     pub fn note(&mut self, now_ms: u64, level: &str, text: String) {
-        self.line(seconds(now_ms), "rig", level, text);
+        self.line(seconds(now_ms), ("rig", None), level, text);
     }
 
     /// What the firmware logged.
@@ -147,13 +150,20 @@ impl Recorder {
                     lines: frame.lines,
                     gain: frame.gain,
                 }),
-                FirmwareLog::LinkDrop { message, why } => {
-                    self.link_drop(now_ms, Side::Camera, message, why);
+                FirmwareLog::LinkDrop {
+                    message,
+                    why,
+                    origin,
+                } => self.drop_frame(now_ms, (FIRMWARE, origin), Side::Camera, message, why),
+                FirmwareLog::CaptureFault { name, origin } => {
+                    let text = format!("capture fault: {name}");
+                    self.line(t, (FIRMWARE, origin), "warn", text);
                 }
-                FirmwareLog::CaptureFault { name } => {
-                    self.line(t, "firmware", "warn", format!("capture fault: {name}"));
-                }
-                FirmwareLog::Line { level, text } => self.line(t, "firmware", level, text),
+                FirmwareLog::Line {
+                    level,
+                    text,
+                    origin,
+                } => self.line(t, (FIRMWARE, origin), level, text),
             }
         }
     }
@@ -182,12 +192,20 @@ impl Recorder {
         }
     }
 
-    fn line(&mut self, t: f64, source: &'static str, level: &str, text: String) {
+    /// Writes a line down; the speaker is who says it, and from where.
+    fn line(
+        &mut self,
+        t: f64,
+        (source, origin): (&'static str, Option<Origin>),
+        level: &str,
+        text: String,
+    ) {
         self.recording.log.push(LogLine {
             t,
             source,
             level: level.to_owned(),
             text,
+            origin,
         });
     }
 

@@ -69,7 +69,9 @@ fn native(lens: LensCalibration) -> Vec<FirmwareLog> {
 /// What the log says of the lens record: level and text.
 fn lens_lines(log: &[FirmwareLog]) -> Vec<(&'static str, &str)> {
     let lines = log.iter().filter_map(|record| match record {
-        FirmwareLog::Line { level, text } => Some((*level, text.strip_prefix("lens record: ")?)),
+        FirmwareLog::Line { level, text, .. } => {
+            Some((*level, text.strip_prefix("lens record: ")?))
+        }
         _ => None,
     });
     lines.collect()

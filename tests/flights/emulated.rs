@@ -119,3 +119,78 @@ fn the_image_keeps_to_its_budget_of_flash_ram_and_stack() {
         f64::from(firmware.stack_peak_bytes.expect("the stack holds")),
     );
 }
+
+/// The checkout that this test and the image are built from.
+const CHECKOUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
+/// The text of a source line, from 1; a file without it fails the test.
+fn source_line(file: &str, line: usize) -> String {
+    let path = PathBuf::from(CHECKOUT).join(file);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{file}: {error}"));
+    let line = text.lines().nth(line - 1);
+    line.unwrap_or_else(|| panic!("{file} is shorter"))
+        .to_owned()
+}
+
+/// Of the lines of a log: the firmware's words, each with the line below it.
+fn firmware_lines(log: &str) -> Vec<(&str, &str)> {
+    let lines: Vec<&str> = log.lines().collect();
+    let pairs = lines.windows(2).map(|pair| (pair[0], pair[1]));
+    pairs
+        .filter_map(|(line, below)| Some((line.split_once(" firmware ")?.1, below)))
+        .collect()
+}
+
+#[test]
+fn every_line_of_the_firmware_is_in_the_flights_log_with_its_time_and_the_statement_it_is_from() {
+    let folder = std::env::temp_dir().join(format!("flight-log-{}", std::process::id()));
+    hil::folder::prepare(&folder).expect("a folder");
+    hil::folder::write(&folder, corner()).expect("written");
+    let log = std::fs::read_to_string(folder.join("flight.log")).expect("a log");
+    std::fs::remove_dir_all(&folder).expect("removed");
+    let lines = firmware_lines(&log);
+    assert!(lines.len() > 100, "{log}");
+    let mut before_s = 0.0;
+    for (said, below) in &lines {
+        let (stamp, text) = said.split_once(' ').expect("a stamp");
+        let stamp_s: f64 = stamp.parse().expect("seconds");
+        assert!(stamp_s >= before_s, "{said}");
+        before_s = stamp_s;
+        let (module, place) = below
+            .trim_start()
+            .strip_prefix("└─ ")
+            .and_then(|place| place.split_once(" @ "))
+            .unwrap_or_else(|| panic!("no place below {said}: {below}"));
+        assert!(module.starts_with("firmware::"), "{below}");
+        let (file, line) = place.rsplit_once(':').expect("a line");
+        let source = source_line(file, line.parse().expect("a number"));
+        assert!(source.contains("defmt::"), "{text}: {place} is {source}");
+    }
+    // The statement is the record's own and not just any.
+    let place = |text: &str| {
+        lines
+            .iter()
+            .find(|(said, _)| said.contains(text))
+            .unwrap()
+            .1
+    };
+    let statement = |text: &str| {
+        let (file, line) = place(text)
+            .rsplit(' ')
+            .next()
+            .unwrap()
+            .rsplit_once(':')
+            .unwrap();
+        let line: usize = line.parse().unwrap();
+        [line, line + 1]
+            .map(|line| source_line(file, line))
+            .join("")
+    };
+    for text in ["state cycles ", "health frames ", "faults sensor "] {
+        assert!(
+            statement(text).contains(text),
+            "{text}: {}",
+            statement(text)
+        );
+    }
+}

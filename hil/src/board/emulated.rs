@@ -1,6 +1,5 @@
 //! The emulated board: the image that would be flashed, on an STM32F407 in software.
 
-use defmt_decoder::Table;
 use emulator::image::{Image, ImageError};
 use emulator::machine::Machine;
 use emulator::time::Nanos;
@@ -9,7 +8,7 @@ use fake_sensors::camera::Pose;
 use sensor::tcm8230::SETTLING_FRAMES;
 
 use super::camera::Camera;
-use super::firmware_log;
+use super::firmware_log::LogTable;
 use super::probe::Probe;
 use super::sabotage::Sabotaged;
 use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog};
@@ -36,7 +35,7 @@ const LENS_PAGE: &str = "_lens_page";
 #[derive(Debug)]
 pub struct Firmware {
     image: Image,
-    table: Table,
+    table: LogTable,
     lens: Option<LensPage>,
 }
 
@@ -45,7 +44,7 @@ impl Firmware {
     pub fn parse(elf: &[u8]) -> Result<Self, BoardError> {
         Ok(Self {
             image: Image::parse(elf)?,
-            table: firmware_log::table(elf)?,
+            table: LogTable::parse(elf)?,
             lens: None,
         })
     }
@@ -173,7 +172,7 @@ impl<'f> Emulated<'f> {
         match self.read_log() {
             Ok(()) => {
                 for record in &self.log {
-                    if let FirmwareLog::Line { level, text } = record {
+                    if let FirmwareLog::Line { level, text, .. } = record {
                         lines += &format!("  {level} {text}\n");
                     }
                 }

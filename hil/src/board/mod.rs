@@ -5,12 +5,15 @@ pub mod camera;
 pub mod emulated;
 mod firmware_log;
 pub mod native;
+pub mod origin;
 mod poses;
 pub mod probe;
 mod rtt;
 pub mod sabotage;
 
 use fake_sensors::camera::Pose;
+
+use origin::Origin;
 
 /// How long before the flight's time zero the first camera frame starts, nanoseconds.
 ///
@@ -106,11 +109,15 @@ pub enum FirmwareLog {
         message: String,
         /// Why.
         why: String,
+        /// When and where it was logged; none where no image did.
+        origin: Option<Origin>,
     },
     /// A fault of the camera's signal or of its way into memory. At most one a second of a name.
     CaptureFault {
         /// `no signal`, `short line` and so on.
         name: String,
+        /// When and where it was logged; none where no image did.
+        origin: Option<Origin>,
     },
     /// Anything else, for people.
     Line {
@@ -118,6 +125,8 @@ pub enum FirmwareLog {
         level: &'static str,
         /// What was said.
         text: String,
+        /// When and where it was logged; none where no image did.
+        origin: Option<Origin>,
     },
 }
 

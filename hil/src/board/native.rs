@@ -57,7 +57,11 @@ impl Native {
             Err(error) => ("warn", format!("{error:?}, the default lens is taken")),
         };
         let text = format!("lens record: {text}");
-        self.log.push(FirmwareLog::Line { level, text });
+        self.log.push(FirmwareLog::Line {
+            level,
+            text,
+            origin: None,
+        });
     }
 
     /// Messages of this millisecond. They are through a third of it (28 bytes of a STATE at
@@ -88,6 +92,7 @@ impl Native {
             .extend(events.iter().map(|event| FirmwareLog::Line {
                 level: "info",
                 text: format!("{event:?}"),
+                origin: None,
             }));
         self.outbound.extend_from_slice(self.outbox.bytes());
         self.outbox.clear();
@@ -140,6 +145,7 @@ fn dropped(refused: &Refused) -> FirmwareLog {
     FirmwareLog::LinkDrop {
         message: refused.message_name().to_owned(),
         why: refused.why.name().to_owned(),
+        origin: None,
     }
 }
 

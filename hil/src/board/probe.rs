@@ -1,11 +1,10 @@
 //! A debug probe on the emulated chip: what the firmware logs.
 
-use defmt_decoder::Table;
 use emulator::image::Image;
 use emulator::machine::Machine;
 use emulator::wiring::Wiring;
 
-use super::firmware_log::LogDecoder;
+use super::firmware_log::{LogDecoder, LogTable};
 use super::rtt::UpChannel;
 use super::{BoardError, FirmwareLog};
 
@@ -19,7 +18,7 @@ pub struct Probe<'f> {
 
 impl<'f> Probe<'f> {
     /// A probe for an image with its log table.
-    pub fn new(image: &Image, table: &'f Table) -> Result<Self, BoardError> {
+    pub fn new(image: &Image, table: &'f LogTable) -> Result<Self, BoardError> {
         let channel = UpChannel::of(image).ok_or(BoardError::NoSymbol(UpChannel::SYMBOL))?;
         Ok(Self {
             channel,

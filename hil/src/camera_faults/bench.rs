@@ -200,7 +200,7 @@ impl<'f> Bench<'f> {
         for record in std::mem::take(&mut self.log) {
             match record {
                 FirmwareLog::Frame(frame) => self.judge(frame.luma),
-                FirmwareLog::CaptureFault { name } => self.faults.push((now, name)),
+                FirmwareLog::CaptureFault { name, .. } => self.faults.push((now, name)),
                 FirmwareLog::LinkDrop { .. } | FirmwareLog::Line { .. } => {}
             }
         }

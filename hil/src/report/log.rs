@@ -41,7 +41,12 @@ pub fn log(lines: &[LogLine]) -> Markup {
                     span { (number::fixed(line.t, 3)) }
                     span { (line.source) }
                     span { (line.level) }
-                    span { (shortened(&line.text)) }
+                    span {
+                        (shortened(&line.text))
+                        @if let Some(place) = line.place() {
+                            " " small title=(place.module) { (place.file) ":" (place.line) }
+                        }
+                    }
                 }
             } }
         }
@@ -104,6 +109,7 @@ fn shortened(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::board::origin::{Origin, Place};
 
     fn line(level: &str) -> LogLine {
         LogLine {
@@ -111,7 +117,27 @@ mod tests {
             source: "firmware",
             level: level.into(),
             text: format!("<{level}>"),
+            origin: None,
         }
+    }
+
+    #[test]
+    fn a_line_of_an_image_shows_its_log_statement() {
+        let place = Place {
+            module: "firmware::log::health".to_owned(),
+            file: "firmware/src/log.rs".to_owned(),
+            line: 97,
+        };
+        let origin = Some(Origin {
+            stamp: "1.000000".to_owned(),
+            place: Some(place),
+        });
+        let page = log(&[LogLine {
+            origin,
+            ..line("info")
+        }]);
+        let shown = r#"<small title="firmware::log::health">firmware/src/log.rs:97</small>"#;
+        assert!(page.into_string().contains(shown));
     }
 
     #[test]

@@ -161,6 +161,7 @@ fn text_from_the_flight_is_escaped() {
         source: "rig",
         level: "\"<i>".into(),
         text: "a < b & c".into(),
+        origin: None,
     });
     for document in [html(&recording, &summary), picture(&recording, &summary)] {
         assert!(!document.contains("<b>\"&"));
@@ -203,6 +204,7 @@ fn imported_flight() -> (Recording, Summary) {
         source: "rig",
         level: "warn".into(),
         text: "headings: not known".into(),
+        origin: None,
     });
     let summary = Summary {
         backend: "cfclient",

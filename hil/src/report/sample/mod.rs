@@ -135,6 +135,7 @@ fn write_log(recording: &mut Recording, end: f64) {
             source,
             level,
             text,
+            origin: None,
         });
     };
     say(0.0, "firmware", "info", "boot: reset by power on".into());
