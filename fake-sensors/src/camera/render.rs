@@ -6,7 +6,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::lens::PanoramicLens;
 use super::{HEIGHT, WIDTH};
-use crate::world::{Aperture, World};
+use crate::world::{Aperture, FAN, World};
 
 /// The optic images this far beyond the ring's nominal edges, in pixels: users calibrate inside.
 const RING_MARGIN_PX: f32 = 1.5;
@@ -122,8 +122,15 @@ impl AnnulusRenderer {
         }
         let viewpoint = world.seen_from(moment.pose.position_m, moment.time_s);
         let to_world = moment.pose.attitude.to_rotation_matrix();
-        for ray in &self.rays[first..last] {
-            self.sharp[ray.index] = viewpoint.radiance(to_world * ray.direction, &ray.aperture);
+        for rays in self.rays[first..last].chunks(FAN) {
+            // The last fan of a row is filled up with its last ray.
+            let ray = |n: usize| &rays[n.min(rays.len() - 1)];
+            let ways = core::array::from_fn(|n| to_world * ray(n).direction);
+            let apertures = core::array::from_fn(|n| ray(n).aperture);
+            let radiances = viewpoint.radiances(&ways, &apertures, rays.len());
+            for (ray, radiance) in rays.iter().zip(radiances) {
+                self.sharp[ray.index] = radiance;
+            }
         }
         for row in start..end {
             self.streak(row);

@@ -12,18 +12,18 @@ pub struct Texture {
 struct Level {
     width: usize,
     height: usize,
-    texels: Vec<f32>,
+    /// Texels of this level for one of the full resolution.
+    scale: f32,
+    /// Each texel with its neighbours to the right, above, and both (themselves at the edge), so that a
+    /// sample is one place in memory.
+    quads: Vec<[f32; 4]>,
 }
 
 impl Texture {
     /// A texture of `width` columns, `texels` given row by row from the surface's origin.
     pub fn new(width: usize, texels: Vec<f32>, texels_per_m: f32) -> Self {
         let height = texels.len() / width;
-        let mut levels = vec![Level {
-            width,
-            height,
-            texels,
-        }];
+        let mut levels = vec![Level::new(width, height, 1.0, &texels)];
         while let Some(next) = levels.last().and_then(Level::halved) {
             levels.push(next);
         }
@@ -39,26 +39,34 @@ impl Texture {
         let top = (self.levels.len() - 1) as f32;
         let lod = log2(footprint_m * self.texels_per_m).clamp(0.0, top);
         let (fine, blend) = split(lod);
-        let sharp = self.levels[fine].bilinear(u, v, fine);
+        let sharp = self.levels[fine].bilinear(u, v);
         match self.levels.get(fine + 1) {
-            Some(coarse) => sharp + blend * (coarse.bilinear(u, v, fine + 1) - sharp),
+            Some(coarse) => sharp + blend * (coarse.bilinear(u, v) - sharp),
             None => sharp,
         }
     }
 }
 
 impl Level {
+    fn new(width: usize, height: usize, scale: f32, texels: &[f32]) -> Self {
+        let at = |u: usize, v: usize| texels[v.min(height - 1) * width + u.min(width - 1)];
+        let quads = (0..width * height).map(|index| {
+            let (u, v) = (index % width, index / width);
+            [at(u, v), at(u + 1, v), at(u, v + 1), at(u + 1, v + 1)]
+        });
+        Self {
+            width,
+            height,
+            scale,
+            quads: quads.collect(),
+        }
+    }
+
     /// `u`, `v` in texels of level 0, whose texel (0, 0) is centred at (0.5, 0.5).
-    fn bilinear(&self, u: f32, v: f32, level: usize) -> f32 {
-        let scale = 1.0 / (1_u32 << level) as f32;
-        let (left, right, across) = neighbours(u * scale, self.width);
-        let (low, high, up) = neighbours(v * scale, self.height);
-        let row = |v: usize| {
-            let texels = &self.texels[v * self.width..(v + 1) * self.width];
-            texels[left] + across * (texels[right] - texels[left])
-        };
-        let low_row = row(low);
-        low_row + up * (row(high) - low_row)
+    fn bilinear(&self, u: f32, v: f32) -> f32 {
+        let (column, across) = place(u * self.scale, self.width);
+        let (row, up) = place(v * self.scale, self.height);
+        mix(&self.quads[row * self.width + column], across, up)
     }
 
     /// The next coarser level; the last column or row of an odd size is averaged with itself.
@@ -67,34 +75,32 @@ impl Level {
             return None;
         }
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
-        let at = |u: usize, v: usize| {
-            self.texels[v.min(self.height - 1) * self.width + u.min(self.width - 1)]
+        let mean = |index: usize| {
+            let (u, v) = (2 * (index % width), 2 * (index / width));
+            0.25 * self.quads[v * self.width + u].iter().sum::<f32>()
         };
-        let texels = (0..width * height)
-            .map(|index| {
-                let (u, v) = (2 * (index % width), 2 * (index / width));
-                0.25 * (at(u, v) + at(u + 1, v) + at(u, v + 1) + at(u + 1, v + 1))
-            })
-            .collect();
-        Some(Self {
-            width,
-            height,
-            texels,
-        })
+        let texels: Vec<f32> = (0..width * height).map(mean).collect();
+        Some(Self::new(width, height, 0.5 * self.scale, &texels))
     }
 }
 
-/// The two texels around coordinate `x` and the weight of the second, clamped to the edge.
-fn neighbours(x: f32, count: usize) -> (usize, usize, f32) {
-    let (first, rest) = split((x - 0.5).clamp(0.0, (count - 1) as f32));
-    (first, (first + 1).min(count - 1), rest)
+/// The texel before coordinate `x`, clamped to the edge, and the weight of the one behind it.
+fn place(x: f32, count: usize) -> (usize, f32) {
+    split((x - 0.5).clamp(0.0, (count - 1) as f32))
 }
 
-/// Whole and fractional part of a number from 0 on. (`floor` is a call where the processor is not
-/// known to have an instruction for it.)
+/// Linear between a texel, the one beside it, the one above it and the one above that.
+pub(super) fn mix([here, right, above, beyond]: &[f32; 4], across: f32, up: f32) -> f32 {
+    let low = here + across * (right - here);
+    let high = above + across * (beyond - above);
+    low + up * (high - low)
+}
+
+/// Whole and fractional part of a number from 0 on, below 2^31. (`floor` is a call where the processor
+/// is not known to have an instruction for it, and a cast to 64 bits a dozen.)
 pub(super) fn split(x: f32) -> (usize, f32) {
-    let whole = x as usize;
-    (whole, x - whole as f32)
+    let whole = x as i32;
+    (whole as usize, x - whole as f32)
 }
 
 /// log2, exact at powers of two and linear between them (error below 0.09): picks mip levels.

@@ -1,6 +1,6 @@
 //! Materials: square grey textures that repeat, prefiltered.
 
-use super::texture::{log2, split};
+use super::texture::{log2, mix, split};
 use crate::random::Normal;
 
 /// Number of texels along an edge: a power of two, so that every level of the pyramid repeats as well.
@@ -9,26 +9,26 @@ pub const SIDE: usize = 256;
 /// A material, in radiance, with its smaller copies.
 #[derive(Clone, Debug)]
 pub struct Tile {
-    /// Full resolution first, one texel last.
-    levels: Vec<Vec<f32>>,
+    /// Full resolution first, one texel last; each texel with its neighbours to the right, above, and
+    /// both, so that a sample is one place in memory.
+    levels: Vec<Vec<[f32; 4]>>,
     texels_per_m: f32,
 }
 
 impl Tile {
     /// A material of `texels` ([`SIDE`] x [`SIDE`], row by row) that repeats after `edge_m`.
     pub fn new(texels: Vec<f32>, edge_m: f32) -> Self {
-        let mut levels = vec![texels];
+        let mut levels = vec![quads(&texels, SIDE)];
         let mut side = SIDE;
         while side > 1 {
             let fine = &levels[levels.len() - 1];
-            let at = |u: usize, v: usize| fine[v * side + u];
             let half = side / 2;
-            let coarse = (0..half * half).map(|index| {
+            let mean = |index: usize| {
                 let (u, v) = (2 * (index % half), 2 * (index / half));
-                0.25 * (at(u, v) + at(u + 1, v) + at(u, v + 1) + at(u + 1, v + 1))
-            });
-            let coarse = coarse.collect();
-            levels.push(coarse);
+                0.25 * fine[v * side + u].iter().sum::<f32>()
+            };
+            let coarse: Vec<f32> = (0..half * half).map(mean).collect();
+            levels.push(quads(&coarse, half));
             side = half;
         }
         Self {
@@ -53,32 +53,35 @@ impl Tile {
 
     /// Mean radiance.
     pub fn mean(&self) -> f32 {
-        self.levels[self.levels.len() - 1][0]
+        self.levels[self.levels.len() - 1][0][0]
     }
 
     fn bilinear(&self, u: f32, v: f32, level: usize) -> f32 {
         let side = SIDE >> level;
         let scale = 1.0 / (1_u32 << level) as f32;
-        let (left, right, across) = neighbours(u * scale, side);
-        let (low, high, up) = neighbours(v * scale, side);
-        let texels = &self.levels[level];
-        let row = |v: usize| {
-            let (left, right) = (texels[v * side + left], texels[v * side + right]);
-            left + across * (right - left)
-        };
-        let low_row = row(low);
-        low_row + up * (row(high) - low_row)
+        let (column, across) = place(u * scale, side);
+        let (row, up) = place(v * scale, side);
+        mix(&self.levels[level][row * side + column], across, up)
     }
 }
 
-/// The two texels around coordinate `x` and the weight of the second; they repeat after `side`, a
+/// Each of `side` x `side` texels with its neighbours.
+fn quads(texels: &[f32], side: usize) -> Vec<[f32; 4]> {
+    let at = |u: usize, v: usize| texels[v % side * side + u % side];
+    let quad = |index: usize| {
+        let (u, v) = (index % side, index / side);
+        [at(u, v), at(u + 1, v), at(u, v + 1), at(u + 1, v + 1)]
+    };
+    (0..side * side).map(quad).collect()
+}
+
+/// The texel before coordinate `x` and the weight of the one behind it; they repeat after `side`, a
 /// power of two.
-fn neighbours(x: f32, side: usize) -> (usize, usize, f32) {
+fn place(x: f32, side: usize) -> (usize, f32) {
     let x = x - 0.5;
     // The cast rounds towards 0: one lower for negative numbers.
     let whole = x as i32 - i32::from(x < 0.0);
-    let first = whole as usize & (side - 1);
-    (first, (first + 1) & (side - 1), x - whole as f32)
+    (whole as usize & (side - 1), x - whole as f32)
 }
 
 /// Noise of natural statistics that repeats: every octave from `coarsest` waves an edge on has unit

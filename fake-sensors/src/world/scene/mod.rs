@@ -2,6 +2,7 @@
 
 pub mod bvh;
 pub mod cover;
+pub mod fan;
 pub mod haze;
 pub mod light;
 pub mod motion;
@@ -18,6 +19,7 @@ use nalgebra::Vector3;
 use super::paint::Tile;
 use bvh::Bvh;
 use cover::{Cover, Covers, Sight};
+use fan::{FAN, Fan};
 use haze::Haze;
 use light::Curve;
 use motion::Path;
@@ -177,7 +179,32 @@ impl Viewpoint<'_> {
     /// light.
     #[must_use]
     pub fn radiance(&self, direction: Vector3<f32>, aperture: &Aperture) -> f32 {
-        let hit = self.first_hit(&direction);
+        self.radiance_of(self.first_hit(&direction), direction, aperture)
+    }
+
+    /// [`Self::radiance`] of the first `count` of several directions, which is quicker than one by one.
+    #[must_use]
+    pub fn radiances(
+        &self,
+        directions: &[Vector3<f32>; FAN],
+        apertures: &[Aperture; FAN],
+        count: usize,
+    ) -> [f32; FAN] {
+        let hits = Fan::new(directions).first_hits(&self.surfaces);
+        let mut radiances = [0.0; FAN];
+        for ray in 0..count.min(FAN) {
+            radiances[ray] = self.radiance_of(hits[ray], directions[ray], &apertures[ray]);
+        }
+        radiances
+    }
+
+    /// Radiance from unit `direction`, where `hit` is the first surface.
+    fn radiance_of(
+        &self,
+        hit: Option<Hit<'_>>,
+        direction: Vector3<f32>,
+        aperture: &Aperture,
+    ) -> f32 {
         let limit_m = hit.as_ref().map_or(f32::INFINITY, |hit| hit.distance_m);
         if !self.holds_solids() {
             return self.behind(hit.as_ref(), &direction, aperture);
@@ -228,15 +255,8 @@ impl Viewpoint<'_> {
     }
 
     fn first_hit(&self, direction: &Vector3<f32>) -> Option<Hit<'_>> {
-        let mut nearest = None;
-        let mut limit_m = f32::INFINITY;
-        for surface in &self.surfaces {
-            if let Some(hit) = surface.hit(direction, limit_m) {
-                limit_m = hit.distance_m;
-                nearest = Some(hit);
-            }
-        }
-        nearest
+        let [first, ..] = Fan::new(&[*direction; FAN]).first_hits(&self.surfaces);
+        first
     }
 
     fn covers(&self, ray: &Ray, limit_m: f32) -> Covers<'_> {

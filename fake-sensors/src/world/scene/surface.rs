@@ -94,24 +94,46 @@ impl Surface {
 }
 
 impl<'a> SeenSurface<'a> {
-    /// Where the ray in unit `direction` meets the surface, if nearer than `limit_m`.
-    pub fn hit(&self, direction: &Vector3<f32>, limit_m: f32) -> Option<Hit<'a>> {
-        let surface = self.surface;
-        let cos_incidence = -direction.dot(&surface.normal);
-        if cos_incidence * limit_m <= self.height_m {
-            return None;
-        }
-        let distance_m = self.height_m / cos_incidence;
-        let u_m = self.u_m + distance_m * direction.dot(&surface.u_axis);
-        let v_m = self.v_m + distance_m * direction.dot(&surface.v_axis);
-        let inside = within(u_m, surface.width_m) && within(v_m, surface.height_m);
-        inside.then_some(Hit {
-            surface,
+    /// The surface's unit normal, to the visible side.
+    pub fn normal(&self) -> &'a Vector3<f32> {
+        &self.surface.normal
+    }
+
+    /// Unit vector along the texture's columns.
+    pub fn u_axis(&self) -> &'a Vector3<f32> {
+        &self.surface.u_axis
+    }
+
+    /// Unit vector along the texture's rows.
+    pub fn v_axis(&self) -> &'a Vector3<f32> {
+        &self.surface.v_axis
+    }
+
+    /// Height of the viewpoint above the surface's plane in metres, above zero.
+    pub fn height_m(&self) -> f32 {
+        self.height_m
+    }
+
+    /// The viewpoint's foot in the surface's plane: along u and v, in metres.
+    pub fn foot_m(&self) -> (f32, f32) {
+        (self.u_m, self.v_m)
+    }
+
+    /// From where to where the surface reaches along u, and along v, in metres.
+    pub fn extent_m(&self) -> ((f32, f32), (f32, f32)) {
+        let reach = |extent_m| (-OVERLAP_M, extent_m + OVERLAP_M);
+        (reach(self.surface.width_m), reach(self.surface.height_m))
+    }
+
+    /// A ray that meets the surface at `(u_m, v_m)`.
+    pub fn hit_at(&self, distance_m: f32, (u_m, v_m): (f32, f32), cos_incidence: f32) -> Hit<'a> {
+        Hit {
+            surface: self.surface,
             distance_m,
             u_m,
             v_m,
             cos_incidence,
-        })
+        }
     }
 }
 
@@ -136,8 +158,4 @@ impl Hit<'_> {
     pub fn light(&self) -> usize {
         self.surface.light.into()
     }
-}
-
-fn within(x_m: f32, extent_m: f32) -> bool {
-    (-OVERLAP_M..=extent_m + OVERLAP_M).contains(&x_m)
 }
