@@ -8,6 +8,7 @@
 
 pub mod board;
 pub mod calibrate;
+pub mod calibrate_timing;
 pub mod camera_faults;
 pub mod cli;
 pub mod drift;

@@ -5,6 +5,7 @@
 
 mod autopilot;
 mod calibrate;
+mod calibrate_timing;
 mod camera_faults;
 mod campaign;
 mod conditions;
@@ -60,6 +61,8 @@ enum Verb {
     Campaign(campaign::Arguments),
     /// Finds the lens in a unit's own pictures and writes its record
     Calibrate(calibrate::Arguments),
+    /// Holds the emulated core's cycles against a board's, kernel by kernel
+    CalibrateTiming(calibrate_timing::Arguments),
     /// Builds the firmware with whatever toolchain there is, and says which
     Build,
     /// Holds the homing against a file of solved problems
@@ -96,6 +99,7 @@ pub fn main() -> ExitCode {
         Verb::Autopilot(arguments) => autopilot::run(&arguments, &console),
         Verb::Campaign(arguments) => campaign::run(&arguments, &console),
         Verb::Calibrate(arguments) => calibrate::run(&arguments, &console),
+        Verb::CalibrateTiming(arguments) => calibrate_timing::run(&arguments, &console),
         Verb::Build => build(&console),
         Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),
         Verb::ImportCf(arguments) => import_cf::run(&arguments, &console),
