@@ -132,6 +132,13 @@ impl Image {
         (offset < entry.symbol.size.max(2)).then_some((entry.demangled.as_str(), offset))
     }
 
+    /// All symbols by their addresses, demangled without the hash: functions, statics and what the
+    /// linker script defines.
+    pub fn symbols(&self) -> impl Iterator<Item = (&str, Symbol)> {
+        let names = self.names.iter();
+        names.map(|entry| (entry.demangled.as_str(), entry.symbol))
+    }
+
     /// The sections that occupy memory on the target.
     pub fn sections(&self) -> &[Section] {
         &self.sections

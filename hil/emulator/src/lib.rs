@@ -6,4 +6,5 @@ pub mod machine;
 pub mod memory;
 pub mod soc;
 pub mod time;
+pub mod trace;
 pub mod wiring;

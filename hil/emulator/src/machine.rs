@@ -2,14 +2,17 @@
 
 mod fault;
 mod stack;
+mod stepping;
 
 pub use fault::{Fault, Reason};
+pub use stepping::Step;
 
-use crate::core::{Call, Core, Cycle, CycleModel, Exit};
+use crate::core::{Call, Core, Cycle, CycleModel, Exit, Stop};
 use crate::image::{Image, ImageError};
 use crate::memory::Memory;
 use crate::soc::{DcmiCounters, FlashTiming, Lines, NEVER, ResetCause, Soc, UsartCounters};
 use crate::time::Nanos;
+use crate::trace::Event;
 use crate::wiring::Wiring;
 
 /// What the RAM holds before the firmware has written to it: an unlikely value, so that the deepest
@@ -65,10 +68,7 @@ impl<W: Wiring> Machine<W> {
     ) -> Result<bool, Fault> {
         loop {
             self.synchronise();
-            if let Some(refusal) = self.soc.refusal() {
-                let reason = Reason::Chip(refusal.clone());
-                return Err(self.fault(reason, self.core.register(15), self.core.register(14)));
-            }
+            self.check_chip()?;
             if !condition(self.soc.wiring()) {
                 return Ok(false);
             }
@@ -135,14 +135,27 @@ impl<W: Wiring> Machine<W> {
         }
         match self.core.run(&mut self.memory, &mut self.soc, next) {
             Exit::Reached | Exit::Asleep | Exit::Synchronise => Ok(()),
-            Exit::Stopped(stop) => {
-                let reason = match self.soc.refusal() {
-                    Some(refusal) => Reason::Chip(refusal.clone()),
-                    None => Reason::Core(stop.cause),
-                };
-                Err(self.fault(reason, stop.pc, stop.lr))
+            Exit::Stopped(stop) => Err(self.stopped(&stop)),
+        }
+    }
+
+    /// What the chip cannot go on with, if anything.
+    fn check_chip(&self) -> Result<(), Fault> {
+        match self.soc.refusal() {
+            None => Ok(()),
+            Some(refusal) => {
+                let reason = Reason::Chip(refusal.clone());
+                Err(self.fault(reason, self.core.register(15), self.core.register(14)))
             }
         }
+    }
+
+    fn stopped(&self, stop: &Stop) -> Fault {
+        let reason = match self.soc.refusal() {
+            Some(refusal) => Reason::Chip(refusal.clone()),
+            None => Reason::Core(stop.cause),
+        };
+        self.fault(reason, stop.pc, stop.lr)
     }
 
     fn fault(&self, reason: Reason, pc: u32, lr: u32) -> Fault {
@@ -229,6 +242,24 @@ impl<W: Wiring> Machine<W> {
         let now = self.core.cycles();
         self.soc
             .stall_dma(&mut self.memory, now, controller, stalled);
+    }
+
+    /// From now on records what happens: calls of [traced](Self::trace_calls) functions, exceptions,
+    /// sleep, frames, bytes on serial wires and ends of DMA transfers.
+    pub fn start_trace(&mut self) {
+        self.core.start_trace();
+        self.soc.start_trace();
+    }
+
+    /// What happened since the last time, in the order of its cycles. A byte on a wire that is under
+    /// way has an end that is yet to come.
+    pub fn take_trace(&mut self) -> Vec<Event> {
+        let mut events = Vec::new();
+        self.soc.take_trace(&mut events);
+        self.core.take_trace(&mut events);
+        // Stable: at one cycle the chip is first, which the core reacts to.
+        events.sort_by_key(|event| event.at);
+        events
     }
 
     /// From now on records every call of the function in flash at `address`.

@@ -2,6 +2,7 @@
 
 use super::code_cache::CodeCache;
 use super::{Core, Cycle};
+use crate::trace::{Recorder, What};
 
 /// One call of a traced function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,11 +39,18 @@ impl CallTrace {
     }
 
     /// The core is about to execute a marked instruction at `pc`.
-    fn reach(&mut self, code: &mut CodeCache, pc: u32, lr: u32, sp: u32, now: Cycle) {
+    fn reach(
+        &mut self,
+        code: &mut CodeCache,
+        trace: &mut Recorder,
+        [sp, lr, pc]: [u32; 3],
+        now: Cycle,
+    ) {
         while let Some(call) = self
             .open
             .pop_if(|call| call.return_to == pc && call.sp == sp)
         {
+            trace.note(now, What::Returned(call.address));
             self.finished.push(Call {
                 address: call.address,
                 entered: call.entered,
@@ -66,6 +74,7 @@ impl CallTrace {
             } == call
         };
         if !self.open.last().is_some_and(is_loop) {
+            trace.note(now, What::Entered(pc));
             self.open.push(call);
             code.trace(call.return_to);
         }
@@ -92,6 +101,7 @@ impl Core {
     #[inline(never)]
     pub(super) fn reach_traced(&mut self, pc: u32) {
         let [.., sp, lr, _] = self.registers.r;
-        self.calls.reach(&mut self.code, pc, lr, sp, self.cycles);
+        self.calls
+            .reach(&mut self.code, &mut self.trace, [sp, lr, pc], self.cycles);
     }
 }

@@ -5,6 +5,7 @@ use super::instruction::{LR, SP};
 use super::nvic::exception;
 use super::{Cause, Core, Cycle, cycles};
 use crate::memory::Memory;
+use crate::trace::What;
 
 /// R0 to R3, R12, LR, return address, xPSR.
 const BASIC_FRAME: u32 = 0x20;
@@ -74,6 +75,8 @@ impl Core {
     }
 
     fn enter(&mut self, memory: &mut Memory, exception: u8) -> Result<(), Cause> {
+        self.trace
+            .note(self.cycles, What::ExceptionEntered(exception));
         let link = self.push_frame(memory)?;
         self.cycles += cycles::EXCEPTION_ENTRY;
         self.begin_handler(memory, exception, link)
@@ -176,11 +179,16 @@ impl Core {
             self.registers.masks.faultmask = false;
         }
         if let Some(next) = self.nvic.preempting(self.registers.masks) {
+            self.trace
+                .note(self.cycles, What::ExceptionReturned(returning));
+            self.trace.note(self.cycles, What::ExceptionEntered(next));
             self.cycles += cycles::TAIL_CHAIN;
             return self.begin_handler(memory, next, link);
         }
         self.cycles += cycles::EXCEPTION_RETURN;
         self.pop_frame(memory, link)?;
+        self.trace
+            .note(self.cycles, What::ExceptionReturned(returning));
         if self.registers.in_handler() == to_thread {
             return Err(invalid);
         }
@@ -248,7 +256,9 @@ impl Core {
 
     /// Lets time pass while asleep. Never goes back.
     pub fn advance_to(&mut self, cycle: Cycle) {
-        self.cycles = self.cycles.max(cycle);
+        let cycle = self.cycles.max(cycle);
+        self.trace.note_sleep(self.cycles, cycle);
+        self.cycles = cycle;
     }
 
     /// SVC: its exception has to be taken right behind it.

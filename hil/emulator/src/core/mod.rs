@@ -33,6 +33,7 @@ pub use cycle_model::CycleModel;
 pub use stop::{Cause, Exit, Stop};
 
 use crate::memory::Memory;
+use crate::trace::{Event, Recorder, What};
 use calls::CallTrace;
 use code_cache::CodeCache;
 use dwt::Dwt;
@@ -80,6 +81,7 @@ pub struct Core {
     code: CodeCache,
     accelerator: FlashAccelerator,
     calls: CallTrace,
+    trace: Recorder,
 }
 
 impl Default for Core {
@@ -109,6 +111,7 @@ impl Core {
             code: CodeCache::new(),
             accelerator: FlashAccelerator::new(),
             calls: CallTrace::default(),
+            trace: Recorder::default(),
         }
     }
 
@@ -132,6 +135,7 @@ impl Core {
         self.code.clear();
         self.accelerator = FlashAccelerator::new();
         self.calls.abandon();
+        self.trace.note(self.cycles, What::Reset);
     }
 
     /// Cycles since power-on, sleep included.
@@ -196,6 +200,16 @@ impl Core {
     /// APSR, IPSR and EPSR together.
     pub fn xpsr(&self) -> u32 {
         self.registers.xpsr()
+    }
+
+    /// From now on records calls of traced functions, exceptions and sleep.
+    pub fn start_trace(&mut self) {
+        self.trace.start();
+    }
+
+    /// Appends what was recorded since the last time, in its order.
+    pub fn take_trace(&mut self, into: &mut Vec<Event>) {
+        self.trace.take(into);
     }
 
     /// Ends the run at the current instruction.

@@ -4,6 +4,7 @@ use super::*;
 use crate::core::Cause;
 use crate::memory::{FLASH, SRAM};
 use crate::soc::Refusal;
+use crate::trace::What;
 use crate::wiring::{Pin, Unwired};
 
 /// An image: 128 vectors of which the first two and `interrupt` are set, then `code`.
@@ -209,6 +210,72 @@ fn a_program_runs_the_same_however_it_is_sliced() {
     for slice in [63, 1_000, 77_777] {
         assert!(run(slice) == whole, "slices of {slice} ns");
     }
+}
+
+#[test]
+fn instruction_by_instruction_a_program_runs_the_same_and_every_cycle_is_accounted_for() {
+    let mut whole = Machine::new(&ticker(), 8_000_000, Unwired).unwrap();
+    let mut stepped = Machine::new(&ticker(), 8_000_000, Unwired).unwrap();
+    let (mut steps, mut cycles, mut handler) = (0, 0, 0);
+    for until in [300_001, 1_000_000].map(Nanos) {
+        whole.run_until(until).unwrap();
+        let see = |step: Step| {
+            steps += 1;
+            cycles += step.cycles;
+            // Interrupt 55.
+            handler += u64::from(step.exception == 71);
+        };
+        stepped.run_stepwise(until, see).unwrap();
+        assert_eq!(stepped.cycles(), whole.cycles());
+    }
+    let list = |machine: &Machine<Unwired>| machine.memory().bytes(SRAM, 1_024).unwrap().to_vec();
+    assert!(list(&stepped) == list(&whole));
+    assert_eq!(steps, whole.instructions());
+    assert_eq!(cycles, whole.cycles());
+    assert!(handler > 0 && handler < steps);
+}
+
+#[test]
+fn a_trace_tells_every_exception_in_its_order_and_changes_nothing() {
+    let mut plain = Machine::new(&ticker(), 8_000_000, Unwired).unwrap();
+    let mut traced = Machine::new(&ticker(), 8_000_000, Unwired).unwrap();
+    traced.start_trace();
+    plain.run_until(Nanos::from_millis(1)).unwrap();
+    traced.run_until(Nanos::from_millis(1)).unwrap();
+    assert_eq!(traced.cycles(), plain.cycles());
+    assert!(plain.take_trace().is_empty());
+    let events = traced.take_trace();
+    let list_bytes = traced.memory().read32(SRAM).unwrap();
+    let entered: Vec<Cycle> = events
+        .iter()
+        .filter(|event| event.what == What::ExceptionEntered(71))
+        .map(|event| event.at)
+        .collect();
+    assert!((0..=1).contains(&(entered.len() as u32 - list_bytes / 4)));
+    // Every 100 cycles, give or take an instruction.
+    for pair in entered.windows(2) {
+        assert!((95..=105).contains(&(pair[1] - pair[0])), "{pair:?}");
+    }
+    for pair in events.windows(2) {
+        assert!(pair[0].at <= pair[1].at && pair[0].what != pair[1].what);
+    }
+}
+
+#[test]
+fn sleep_is_traced_to_the_cycle() {
+    let mut machine = Machine::new(&doomed(), 8_000_000, Unwired).unwrap();
+    machine.start_trace();
+    machine.run_until(Nanos::from_millis(100)).unwrap();
+    machine.run_until(Nanos::from_millis(200)).unwrap();
+    let events = machine.take_trace();
+    let asleep = |event: &Event| match event.what {
+        What::Slept { until } => until - event.at,
+        _ => 0,
+    };
+    let slept: Cycle = events.iter().map(asleep).sum();
+    assert_eq!(slept, machine.idle_cycles());
+    // Nothing interrupts it: one sleep, whoever looks meanwhile.
+    assert_eq!(events.len(), 1);
 }
 
 #[test]

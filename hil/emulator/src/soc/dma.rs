@@ -7,11 +7,14 @@ mod request;
 mod stream;
 
 pub use request::Request;
+use request::Slot;
 
 use super::interrupts::{self, Lines};
 use super::map::Block;
 use super::refusal::Refusal;
+use crate::core::Cycle;
 use crate::memory::Memory;
+use crate::trace::{Recorder, What};
 use stream::Stream;
 
 /// Where the flags of streams 0 to 3 (4 to 7) lie in LISR (HISR).
@@ -23,6 +26,9 @@ pub struct Dma {
     streams: [[Stream; 8]; 2],
     /// The bus that a controller waits for is taken.
     stalled: [bool; 2],
+    /// The present, for the trace.
+    now: Cycle,
+    pub(super) trace: Recorder,
 }
 
 impl Dma {
@@ -31,6 +37,8 @@ impl Dma {
         Self {
             streams: [[Stream::RESET; 8]; 2],
             stalled: [false; 2],
+            now: 0,
+            trace: Recorder::default(),
         }
     }
 
@@ -48,6 +56,15 @@ impl Dma {
         self.stalled[index(controller)] = stalled;
     }
 
+    /// Resets both controllers and what is done to them from outside; the trace goes on.
+    pub fn restart(&mut self) {
+        let trace = core::mem::take(&mut self.trace);
+        *self = Self {
+            trace,
+            ..Self::new()
+        };
+    }
+
     /// Resets controller 1 or 2; the bus is none of its business.
     pub fn reset(&mut self, controller: u8) {
         self.streams[index(controller)] = [Stream::RESET; 8];
@@ -56,27 +73,51 @@ impl Dma {
     /// Moves one item from the requesting peripheral to memory. False: no enabled stream serves the
     /// request, or the bus refused.
     pub fn store(&mut self, memory: &mut Memory, request: Request, value: u32) -> bool {
-        self.serving(request)
-            .is_some_and(|stream| stream.accept(memory, value))
+        let Some(slot) = self.serving(request) else {
+            return false;
+        };
+        let stored = self.stream(slot).accept(memory, value);
+        self.note_end(slot);
+        stored
     }
 
     /// Moves one item from memory to the requesting peripheral; `None` as in [`store`](Self::store).
     pub fn load(&mut self, memory: &Memory, request: Request) -> Option<u32> {
-        self.serving(request)?.supply(memory)
+        let slot = self.serving(request)?;
+        let item = self.stream(slot).supply(memory);
+        self.note_end(slot);
+        item
     }
 
     /// Items left in the stream that serves `request`; `None` if none does.
     pub fn remaining(&mut self, request: Request) -> Option<u32> {
-        self.serving(request).map(|stream| stream.remaining())
+        let slot = self.serving(request)?;
+        Some(self.stream(slot).remaining())
     }
 
-    fn serving(&mut self, request: Request) -> Option<&mut Stream> {
-        let slot = request.slots().iter().find(|slot| {
+    fn serving(&self, request: Request) -> Option<&'static Slot> {
+        request.slots().iter().find(|slot| {
             let controller = index(slot.controller);
             !self.stalled[controller]
                 && self.streams[controller][usize::from(slot.stream)].serves(slot.channel)
-        })?;
-        Some(&mut self.streams[index(slot.controller)][usize::from(slot.stream)])
+        })
+    }
+
+    fn stream(&mut self, slot: &Slot) -> &mut Stream {
+        &mut self.streams[index(slot.controller)][usize::from(slot.stream)]
+    }
+
+    /// What is moved from now on is moved at this cycle.
+    pub fn set_time(&mut self, now: Cycle) {
+        self.now = now;
+    }
+
+    fn note_end(&mut self, slot: &Slot) {
+        if self.stream(slot).is_between_transfers() {
+            let (controller, stream) = (slot.controller, slot.stream);
+            self.trace
+                .note(self.now, What::DmaDone { controller, stream });
+        }
     }
 
     /// Drives the streams' interrupt lines.

@@ -39,7 +39,8 @@ pub use usart::UsartCounters;
 use crate::core::Cycle;
 use crate::memory::Memory;
 use crate::time::Nanos;
-use crate::wiring::Wiring;
+use crate::trace::{Event, Recorder, What};
+use crate::wiring::{CameraSignal, Wiring};
 use bridges::Bridges;
 use clocks::{ClockTree, Rcc};
 use dcmi::Dcmi;
@@ -85,6 +86,7 @@ pub struct Soc<W> {
     /// The next event, until something may have changed it.
     next: Option<Cycle>,
     refusal: Option<Refusal>,
+    trace: Recorder,
 }
 
 impl<W: Wiring> Soc<W> {
@@ -112,6 +114,7 @@ impl<W: Wiring> Soc<W> {
             camera_silent_at: None,
             next: None,
             refusal: None,
+            trace: Recorder::default(),
         }
     }
 
@@ -125,7 +128,7 @@ impl<W: Wiring> Soc<W> {
         self.flash = Flash::default();
         self.syscfg = Syscfg::default();
         self.exti = Exti::default();
-        self.dma = Dma::new();
+        self.dma.restart();
         self.watchdog = Watchdog::new();
         self.timers = core::array::from_fn(|index| Timer::new(index as u8 + 1));
         self.ports.iter_mut().for_each(Gpio::reset);
@@ -206,7 +209,25 @@ impl<W: Wiring> Soc<W> {
         self.next = None;
         self.dma.stall(controller, stalled);
         if !stalled {
+            self.dma.set_time(now);
             self.serve_requests(memory, now);
+        }
+    }
+
+    /// From now on records the camera's edges, the bytes on serial wires and the ends of DMA
+    /// transfers.
+    pub fn start_trace(&mut self) {
+        self.trace.start();
+        self.dma.trace.start();
+        self.usarts.iter_mut().for_each(|usart| usart.trace.start());
+    }
+
+    /// Appends what was recorded since the last time, block by block.
+    pub fn take_trace(&mut self, into: &mut Vec<Event>) {
+        self.trace.take(into);
+        self.dma.trace.take(into);
+        for usart in &mut self.usarts {
+            usart.trace.take(into);
         }
     }
 
@@ -250,6 +271,7 @@ impl<W: Wiring> Soc<W> {
 
     /// Performs the events of one cycle.
     fn perform(&mut self, memory: &mut Memory, now: Cycle) {
+        self.dma.set_time(now);
         if self.watchdog_cycle() <= now {
             self.refusal = Some(Refusal::Watchdog);
             return;
@@ -283,10 +305,17 @@ impl<W: Wiring> Soc<W> {
         let Some(due) = self.wiring.camera_next() else {
             return;
         };
-        match self.wiring.camera_signal(due) {
-            Some(signal) => self.dcmi.signal(signal, memory, &mut self.dma),
-            None => self.camera_silent_at = Some(due),
-        }
+        let Some(signal) = self.wiring.camera_signal(due) else {
+            self.camera_silent_at = Some(due);
+            return;
+        };
+        let what = match signal {
+            CameraSignal::FrameStart => What::FrameStart,
+            CameraSignal::Line(_) => What::Line,
+            CameraSignal::FrameEnd => What::FrameEnd,
+        };
+        self.trace.note(self.time.cycle_at(due), what);
+        self.dcmi.signal(signal, memory, &mut self.dma);
     }
 
     /// The level of every interrupt line.

@@ -157,6 +157,7 @@ impl<W: Wiring> Soc<W> {
         offset: u32,
         value: u32,
     ) -> Result<(), Refusal> {
+        self.dma.set_time(now);
         match block {
             Block::Timer(number) => self.write_timer(now, number, offset, value),
             Block::Usart(number) => {

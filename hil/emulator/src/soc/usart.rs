@@ -11,6 +11,7 @@ use super::refusal::Refusal;
 use super::timeline::NEVER;
 use crate::core::Cycle;
 use crate::time::Nanos;
+use crate::trace::Recorder;
 
 const SR: u32 = 0x00;
 const DR: u32 = 0x04;
@@ -91,6 +92,7 @@ pub struct Usart {
     idle_at: Cycle,
     sent: Vec<(Nanos, u8)>,
     counters: UsartCounters,
+    pub(super) trace: Recorder,
 }
 
 impl Usart {
@@ -115,6 +117,7 @@ impl Usart {
             idle_at: NEVER,
             sent: Vec::new(),
             counters: UsartCounters::default(),
+            trace: Recorder::default(),
         }
     }
 
@@ -126,6 +129,7 @@ impl Usart {
         self.line_free = before.line_free;
         self.sent = before.sent;
         self.counters = before.counters;
+        self.trace = before.trace;
     }
 
     /// One bus clock is now `cycles` of HCLK; bytes in flight keep their end.

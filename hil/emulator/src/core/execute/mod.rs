@@ -45,6 +45,15 @@ impl Core {
         self.exit(pc, until)
     }
 
+    /// Executes one instruction, for an observer who looks at each. What the core cannot go on
+    /// without, or beyond, is said as by [`run`](Self::run).
+    pub fn run_one(&mut self, memory: &mut Memory, bus: &mut dyn Bus) -> Exit {
+        match self.run(memory, bus, self.cycles + 1) {
+            Exit::Reached if self.horizon == 0 => Exit::Synchronise,
+            exit => exit,
+        }
+    }
+
     /// Executes one instruction, the one at `pc`.
     #[inline(always)]
     fn step(&mut self, memory: &mut Memory, bus: &mut dyn Bus, instruction: Instruction, pc: u32) {

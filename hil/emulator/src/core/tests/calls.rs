@@ -90,3 +90,23 @@ fn tracing_changes_no_cycle() {
     traced.core.trace_calls(CODE + 8);
     assert_eq!(traced.run(), plain);
 }
+
+#[test]
+fn a_call_is_traced_where_it_begins_and_where_it_has_returned() {
+    let program = &[
+        0xf000, 0xf801, // bl 1f
+        0xe002, // b 2f
+        0xbf00, // nop
+        0x4770, // bx lr
+        0xbf00, // nop
+    ];
+    let mut bench = Bench::new(program);
+    bench.core.trace_calls(CODE + 6);
+    bench.core.start_trace();
+    bench.run();
+    let mut events = Vec::new();
+    bench.core.take_trace(&mut events);
+    let function = CODE + 6;
+    let expected = [(3, What::Entered(function)), (7, What::Returned(function))];
+    assert_eq!(events, expected.map(|(at, what)| Event { at, what }));
+}

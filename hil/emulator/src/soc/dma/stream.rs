@@ -82,6 +82,11 @@ impl Stream {
         self.count
     }
 
+    /// Whether the item that was moved last was the last of its transfer.
+    pub fn is_between_transfers(&self) -> bool {
+        self.count == 0 || self.count == self.programmed
+    }
+
     /// Moves one item to memory. False: the bus refused, and the stream stopped.
     pub fn accept(&mut self, memory: &mut Memory, item: u32) -> bool {
         let done = self.store(memory, item).is_some();

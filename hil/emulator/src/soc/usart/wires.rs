@@ -9,6 +9,7 @@ use crate::memory::Memory;
 use crate::soc::dma::{Dma, Request};
 use crate::soc::timeline::{NEVER, Timeline};
 use crate::time::Nanos;
+use crate::trace::{SerialWire, What};
 
 impl Usart {
     /// Puts bytes on the RX line, back to back, the first not before `at`.
@@ -89,6 +90,18 @@ impl Usart {
         let ends = start + self.character_cycles();
         self.line_free = ends;
         self.arriving = Some(Shift { byte, ends });
+        self.note(start, SerialWire::Receive, byte, ends);
+    }
+
+    fn note(&mut self, at: Cycle, wire: SerialWire, byte: u8, ends: Cycle) {
+        let usart = self.number;
+        let what = What::Byte {
+            usart,
+            wire,
+            byte,
+            ends,
+        };
+        self.trace.note(at, what);
     }
 
     fn receive(&mut self, shift: Shift) {
@@ -128,6 +141,7 @@ impl Usart {
             };
             let ends = now + self.character_cycles();
             self.sending = Some(Shift { byte, ends });
+            self.note(now, SerialWire::Transmit, byte, ends);
         }
     }
 
