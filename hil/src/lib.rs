@@ -6,6 +6,7 @@
 //!             record -> summary, report, folder
 //! ```
 
+pub mod bench;
 pub mod board;
 pub mod calibrate;
 pub mod calibrate_timing;

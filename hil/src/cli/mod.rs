@@ -4,6 +4,7 @@
 //! does not hold). 2: it could not be done (wrong options, no compiler, a chip that stopped).
 
 mod autopilot;
+mod bench;
 mod calibrate;
 mod calibrate_timing;
 mod camera_faults;
@@ -57,6 +58,8 @@ enum Verb {
     Emulate(emulate::Arguments),
     /// Offers the emulated autopilot to a real board, in real time
     Autopilot(autopilot::Arguments),
+    /// Measures how fast the rig itself is on this machine
+    Bench(bench::Arguments),
     /// Flies many seeds and prints their statistics
     Campaign(campaign::Arguments),
     /// Finds the lens in a unit's own pictures and writes its record
@@ -97,6 +100,7 @@ pub fn main() -> ExitCode {
         Verb::Fly(arguments) => fly::run(&arguments, &console),
         Verb::Emulate(arguments) => emulate::run(&arguments, &console),
         Verb::Autopilot(arguments) => autopilot::run(&arguments, &console),
+        Verb::Bench(arguments) => bench::run(&arguments, &console),
         Verb::Campaign(arguments) => campaign::run(&arguments, &console),
         Verb::Calibrate(arguments) => calibrate::run(&arguments, &console),
         Verb::CalibrateTiming(arguments) => calibrate_timing::run(&arguments, &console),
