@@ -6,6 +6,7 @@
 
 use super::cycles;
 use super::decode::{Place, decode};
+use super::flash_accelerator::line_of;
 use super::hazards::Before;
 use super::instruction::{Instruction, Operation};
 use crate::memory::{FLASH, FLASH_BYTES, Memory};
@@ -97,6 +98,7 @@ impl CodeCache {
         let mut address = pc;
         let mut block = ItBlock::default();
         let mut before = Before::default();
+        let mut line = u32::MAX;
         for count in 0.. {
             let inside = block.is_open();
             if !inside && (count >= LONGEST_RUN || self.locate(address) != NOWHERE) {
@@ -115,6 +117,10 @@ impl CodeCache {
             instruction.cycles = before.cost(&instruction);
             if instruction.refills() {
                 instruction.cycles = instruction.cycles - cycles::REFILL + self.refill;
+            }
+            if line_of(address) != line {
+                line = line_of(address);
+                instruction.guard = instruction.guard.at_line();
             }
             if self.traced.contains(&address) {
                 instruction.guard = instruction.guard.with_trace();

@@ -120,6 +120,11 @@ fn slot_index(line: u32) -> usize {
     line as usize % FLASH_LINES
 }
 
+/// The number of the line that holds an address.
+pub(super) fn line_of(address: u32) -> u32 {
+    address >> LINE_SHIFT
+}
+
 /// The accelerator as FLASH_ACR sets it up. After reset: no wait states, everything off.
 pub(super) struct FlashAccelerator {
     wait_states: u32,
@@ -159,7 +164,7 @@ impl FlashAccelerator {
     /// Whether an instruction at `pc` needs another line than the one before it.
     #[inline(always)]
     pub fn changes_line(&self, pc: u32) -> bool {
-        pc >> LINE_SHIFT != self.line
+        line_of(pc) != self.line
     }
 
     /// The cycles that fetching from a new line takes.
@@ -170,7 +175,7 @@ impl FlashAccelerator {
     /// follow one another, and what the instructions of a line do not fill shows, that cycle included.
     #[inline(never)]
     pub fn enter_line(&mut self, pc: u32, now: u64) -> u64 {
-        let line = pc >> LINE_SHIFT;
+        let line = line_of(pc);
         let in_sequence = line == self.line.wrapping_add(1);
         self.line = line;
         if self.wait_states == 0 || line >> 16 != FLASH_REGION {
@@ -190,7 +195,7 @@ impl FlashAccelerator {
     /// The cycles that reading a constant from flash takes beyond those of RAM.
     #[inline]
     pub fn read_constant(&mut self, address: u32) -> u64 {
-        if self.wait_states == 0 || self.data.holds(address >> LINE_SHIFT) {
+        if self.wait_states == 0 || self.data.holds(line_of(address)) {
             return 0;
         }
         self.wait_states.into()

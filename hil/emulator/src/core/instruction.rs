@@ -287,6 +287,7 @@ impl Guard {
     pub const NONE: Self = Self(ALWAYS);
     const FLOAT: u8 = 0x10;
     const TRACED: u8 = 0x20;
+    const LINE: u8 = 0x40;
 
     pub const fn on_condition(self, condition: u8) -> Self {
         Self(self.0 & 0xf0 | condition & 15)
@@ -298,6 +299,10 @@ impl Guard {
 
     pub const fn with_trace(self) -> Self {
         Self(self.0 | Self::TRACED)
+    }
+
+    pub const fn at_line(self) -> Self {
+        Self(self.0 | Self::LINE)
     }
 
     /// The condition code; 14 is "always".
@@ -315,6 +320,12 @@ impl Guard {
     #[inline(always)]
     pub const fn is_float(self) -> bool {
         self.0 & Self::FLOAT != 0
+    }
+
+    /// It is the first in its line of flash.
+    #[inline(always)]
+    pub const fn begins_line(self) -> bool {
+        self.0 & Self::LINE != 0
     }
 
     /// The call tracer wants to know when this executes.

@@ -27,21 +27,27 @@ impl Core {
         let mut pc = self.registers.pc;
         let mut next = pc;
         let mut place = self.code.locate(pc);
+        let mut executed = 0;
+        if self.cycles < self.horizon {
+            self.reach_line(pc);
+            // Whoever begins executes an instruction, however long it is fetched.
+            self.horizon = self.horizon.max(self.cycles + 1);
+        }
         while self.cycles < self.horizon {
             pc = next;
-            if self.accelerator.changes_line(pc) {
-                self.cycles += self.accelerator.enter_line(pc, self.cycles);
-            }
             let instruction = self.code.at(place);
             next = pc.wrapping_add(instruction.length.into());
+            executed += 1;
             self.step(memory, bus, instruction, pc);
             if self.registers.pc == next {
                 place += 1;
             } else {
                 next = self.registers.pc;
                 place = self.code.locate(next);
+                self.reach_line(next);
             }
         }
+        self.instructions = self.instructions.wrapping_add(executed);
         self.exit(pc, until)
     }
 
@@ -54,10 +60,18 @@ impl Core {
         }
     }
 
+    /// The next instruction is fetched from `pc`. Behind a branch it is asked for each time, else only
+    /// where a line begins.
+    #[inline(always)]
+    fn reach_line(&mut self, pc: u32) {
+        if self.accelerator.changes_line(pc) {
+            self.cycles += self.accelerator.enter_line(pc, self.cycles);
+        }
+    }
+
     /// Executes one instruction, the one at `pc`.
     #[inline(always)]
     fn step(&mut self, memory: &mut Memory, bus: &mut dyn Bus, instruction: Instruction, pc: u32) {
-        self.instructions += 1;
         self.registers.pc = pc.wrapping_add(instruction.length.into());
         if instruction.guard != Guard::NONE && !self.passes(memory, instruction.guard, pc) {
             self.cycles += 1;
@@ -74,12 +88,17 @@ impl Core {
     fn decode_more(&mut self, memory: &mut Memory, bus: &mut dyn Bus) {
         let pc = self.registers.pc - u32::from(Instruction::UNDECODED.length);
         self.registers.pc = pc;
-        self.instructions -= 1;
+        // It was counted as an instruction.
+        self.instructions = self.instructions.wrapping_sub(1);
         if self.code.decode_run(memory, pc) {
             return;
         }
         match fetch(memory, pc, self.registers.it_block.next()) {
-            Some(instruction) => self.step(memory, bus, instruction, pc),
+            Some(instruction) => {
+                self.instructions = self.instructions.wrapping_add(1);
+                self.reach_line(pc);
+                self.step(memory, bus, instruction, pc);
+            }
             None => self.fail(Cause::Fetch(pc)),
         }
     }
@@ -87,6 +106,9 @@ impl Core {
     /// Does what a guard asks for. False: the instruction does not execute.
     #[inline(always)]
     fn passes(&mut self, memory: &mut Memory, guard: Guard, pc: u32) -> bool {
+        if guard.begins_line() {
+            self.reach_line(pc);
+        }
         if guard.is_traced() {
             self.reach_traced(pc);
         }
