@@ -11,6 +11,7 @@ pub mod board;
 pub mod calibrate;
 pub mod calibrate_timing;
 pub mod camera_faults;
+pub mod catchment;
 pub mod cli;
 pub mod drift;
 pub mod ekf_replay;

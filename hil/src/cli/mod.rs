@@ -9,6 +9,7 @@ mod calibrate;
 mod calibrate_timing;
 mod camera_faults;
 mod campaign;
+mod catchment;
 mod conditions;
 mod console;
 mod drift;
@@ -62,6 +63,8 @@ enum Verb {
     Bench(bench::Arguments),
     /// Flies many seeds and prints their statistics
     Campaign(campaign::Arguments),
+    /// Measures from where a snapshot of so many bytes brings a robot home
+    Catchment(catchment::Arguments),
     /// Finds the lens in a unit's own pictures and writes its record
     Calibrate(calibrate::Arguments),
     /// Holds the emulated core's cycles against a board's, kernel by kernel
@@ -102,6 +105,7 @@ pub fn main() -> ExitCode {
         Verb::Autopilot(arguments) => autopilot::run(&arguments, &console),
         Verb::Bench(arguments) => bench::run(&arguments, &console),
         Verb::Campaign(arguments) => campaign::run(&arguments, &console),
+        Verb::Catchment(arguments) => catchment::run(&arguments, &console),
         Verb::Calibrate(arguments) => calibrate::run(&arguments, &console),
         Verb::CalibrateTiming(arguments) => calibrate_timing::run(&arguments, &console),
         Verb::Build => build(&console),
