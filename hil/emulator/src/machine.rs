@@ -1,9 +1,11 @@
 //! The whole machine: core, memories, chip and wiring, driven through virtual time.
 
+mod debug;
 mod fault;
 mod stack;
 mod stepping;
 
+pub use debug::{DebugUnit, Pause, Watched, Watchpoint};
 pub use fault::{Fault, Reason};
 pub use stepping::Step;
 
@@ -27,6 +29,7 @@ pub struct Machine<W> {
     image: Image,
     idle_cycles: Cycle,
     lines: Lines,
+    debug: DebugUnit,
     flash_timing: FlashTiming,
     /// How fetches meet the flash, whatever the firmware programs.
     assumed_flash: Option<FlashTiming>,
@@ -49,6 +52,7 @@ impl<W: Wiring> Machine<W> {
             image: image.clone(),
             idle_cycles: 0,
             lines: Lines::default(),
+            debug: DebugUnit::default(),
             assumed_flash: None,
         })
     }

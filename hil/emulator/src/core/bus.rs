@@ -16,6 +16,17 @@ pub enum Width {
     Word,
 }
 
+impl Width {
+    /// In bytes.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::Byte => 1,
+            Self::Half => 2,
+            Self::Word => 4,
+        }
+    }
+}
+
 /// Nothing answers at this address. The run stops there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BusFault;

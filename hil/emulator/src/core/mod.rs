@@ -6,11 +6,13 @@
 //! end the run with a [`Stop`]. Left out: the MPU, privilege, floating-point modes and cumulative
 //! exception flags, and interrupting LDM and division half-way.
 
+mod access;
 mod bus;
 mod calls;
 mod code_cache;
 mod cycle_model;
 mod cycles;
+mod debug;
 mod decode;
 mod dwt;
 mod exceptions;
@@ -27,9 +29,11 @@ mod stop;
 mod system_control;
 mod systick;
 
+pub use access::Access;
 pub use bus::{Bus, BusFault, Cycle, Width};
 pub use calls::Call;
 pub use cycle_model::CycleModel;
+pub use debug::Special;
 pub use stop::{Cause, Exit, Stop};
 
 use crate::memory::Memory;

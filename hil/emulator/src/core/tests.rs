@@ -1,5 +1,6 @@
 //! Claims about the core, each as a few instructions and what the architecture says they do.
 
+mod access;
 mod arithmetic;
 mod calls;
 mod control;

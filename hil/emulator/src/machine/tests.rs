@@ -1,5 +1,7 @@
 //! Claims about the whole machine, made by programs of a few instructions.
 
+mod debug;
+
 use super::*;
 use crate::core::Cause;
 use crate::memory::{FLASH, SRAM};

@@ -169,6 +169,11 @@ impl<W: Wiring> Soc<W> {
         self.refusal.as_ref()
     }
 
+    /// Forgets why the run must stop: it was a debugger that asked for too much.
+    pub fn pardon(&mut self) {
+        self.refusal = None;
+    }
+
     /// What became of the camera's frames.
     pub fn dcmi_counters(&self) -> DcmiCounters {
         self.dcmi.counters()

@@ -219,7 +219,7 @@ impl Core {
 }
 
 /// Peripherals and exclusive accesses take no unaligned addresses.
-pub(super) fn check_alignment(address: u32, width: Width) -> Result<(), Cause> {
+pub(in crate::core) fn check_alignment(address: u32, width: Width) -> Result<(), Cause> {
     let mask = match width {
         Width::Byte => 0,
         Width::Half => 1,

@@ -10,6 +10,8 @@ mod multiple;
 mod operations;
 mod system;
 
+pub(super) use memory::check_alignment;
+
 use super::bus::{Bus, Cycle};
 use super::code_cache::fetch;
 use super::exceptions::Sleep;
