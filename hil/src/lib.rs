@@ -18,6 +18,7 @@ pub mod ekf_replay;
 pub mod exposure;
 pub mod flight;
 pub mod folder;
+pub mod gdb;
 pub mod homing_check;
 pub mod image;
 pub mod import_cf;

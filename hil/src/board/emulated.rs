@@ -2,6 +2,7 @@
 
 use emulator::image::{Image, ImageError};
 use emulator::machine::Machine;
+use emulator::soc::ResetCause;
 use emulator::time::Nanos;
 use emulator::wiring::Wiring;
 use fake_sensors::camera::Pose;
@@ -167,6 +168,37 @@ impl<'f> Emulated<'f> {
         self.elapsed_ms += 1;
     }
 
+    /// Advances by one millisecond, in which `run` brings the machine to the instant that it is given.
+    ///
+    /// # Errors
+    /// As of [`Board::advance`], and those of `run`.
+    pub fn advance_by(
+        &mut self,
+        run: impl FnOnce(&mut Self, Nanos) -> Result<(), BoardError>,
+    ) -> Result<(), BoardError> {
+        self.disturb();
+        self.clock = self.clock + MILLISECOND;
+        run(self, self.clock)?;
+        self.collect_calls();
+        self.read_log()?;
+        // The firmware may stand between looking at a frame and logging it.
+        self.check_log(1)
+    }
+
+    /// The chip and what is around it.
+    pub fn machine(&mut self) -> &mut Machine<Sabotaged> {
+        &mut self.machine
+    }
+
+    /// Pulls the reset pin for a moment. Virtual time, the camera and the link go on.
+    pub fn reset(&mut self) {
+        self.machine.reset(ResetCause::Pin);
+        self.probe.restart();
+        self.collect_calls();
+        // What was about to be logged never will be.
+        self.frames_logged = self.traced_cycles.len();
+    }
+
     fn no_frame(&mut self) -> BoardError {
         let mut lines = String::new();
         match self.read_log() {
@@ -232,13 +264,7 @@ impl Board for Emulated<'_> {
     }
 
     fn advance(&mut self) -> Result<(), BoardError> {
-        self.disturb();
-        self.clock = self.clock + MILLISECOND;
-        self.machine.run_until(self.clock)?;
-        self.collect_calls();
-        self.read_log()?;
-        // The firmware may stand between looking at a frame and logging it.
-        self.check_log(1)
+        self.advance_by(|board, until| Ok(board.machine.run_until(until)?))
     }
 
     fn receive(&mut self, into: &mut Vec<u8>) {

@@ -57,6 +57,11 @@ impl<'t> LogDecoder<'t> {
         }
     }
 
+    /// The firmware was reset: the rest of what it was about to say will not come.
+    pub fn restart(&mut self) {
+        *self = Self::new(self.table);
+    }
+
     /// Takes bytes from the channel and appends the records that are complete.
     pub fn decode(&mut self, bytes: &[u8], into: &mut Vec<FirmwareLog>) -> Result<(), BoardError> {
         self.decoder.received(bytes);

@@ -27,6 +27,11 @@ impl<'f> Probe<'f> {
         })
     }
 
+    /// The chip was reset.
+    pub fn restart(&mut self) {
+        self.decoder.restart();
+    }
+
     /// Appends what the firmware logged since the last call.
     pub fn read<W: Wiring>(
         &mut self,

@@ -8,7 +8,7 @@ use super::Failure;
 use super::console::Console;
 use super::fly::ScenarioArguments;
 use super::live::{LiveArguments, prepare, say};
-use crate::live::{AutopilotSetup, Stop, TcpPort, beside, fly_aircraft};
+use crate::live::{AutopilotSetup, Endpoint, Stop, TcpPort, beside, fly_aircraft};
 
 /// Options of `hil autopilot`.
 #[derive(Debug, Args)]
@@ -44,6 +44,11 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     let scenario = arguments.scenario.scenario(arguments.seed);
     let live = &arguments.live;
+    if *live.link() == Endpoint::Nowhere {
+        return Err(
+            "an autopilot needs a board: --link pty, --link tty:PATH or --link tcp:PORT".into(),
+        );
+    }
     let pose = arguments.pose.or_else(|| beside(live.link()));
     live.beside(pose)?;
     let name = format!("live-autopilot-{}-{}", scenario.route.name(), scenario.seed);

@@ -19,6 +19,8 @@ use crate::live::{EmulateSetup, PoseSource, Stop, emulate};
     hil emulate --link pty                  prints a device, for whatever opens a serial port\n  \
     hil emulate --link tty:/dev/ttyUSB0     for a real Crazyflie: a 3.3 V USB adapter's RX to its TX2,\n  \
     \x20                                       TX to RX2, ground to ground (921600 baud)\n  \
+    hil emulate --gdb 3333                  for gdb-multiarch ELF -ex 'target remote :3333': break and watch\n  \
+    \x20                                       points, registers, memory; virtual time stands still while halted\n  \
     hil emulate --link pty --pose tcp:6000  for a simulator of yours (SITL) that knows the true pose\n\n\
     The link: pprzlink 2.0 with the messages of the visual-homing app, as on the UART of the board.\n\
     With tcp, whoever comes first listens and the other one connects; either may start again.\n\n\
@@ -37,6 +39,9 @@ pub struct Arguments {
     /// poses to the port after it, else state]
     #[arg(long, value_name = "SOURCE")]
     pose: Option<PoseSource>,
+    /// Serves GDB on a port of this machine; 0 takes any that is free, and says which
+    #[arg(long, value_name = "PORT")]
+    gdb: Option<u16>,
     /// The world: a name that `hil look` lists, or a file
     #[arg(long, default_value = "arena-panels", value_parser = world::parse)]
     world: String,
@@ -67,6 +72,7 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
         world: arguments.world.clone(),
         seed: arguments.seed,
         pose,
+        gdb: arguments.gdb,
     };
     let flown = emulate(&setup, &|notice| say(console, notice))?;
     live.end(&out, &flown, console)

@@ -18,8 +18,8 @@ const FASTEST: f64 = 100.0;
 /// Options of both verbs.
 #[derive(Clone, Debug, Args)]
 pub struct LiveArguments {
-    /// Where the other half is met: pty, tty:PATH or tcp:PORT (on this machine)
-    #[arg(long, value_name = "ENDPOINT")]
+    /// Where the other half is met: pty, tty:PATH, tcp:PORT (on this machine) or none
+    #[arg(long, value_name = "ENDPOINT", default_value = "none")]
     link: Endpoint,
     /// Rate of a tty; a pty and TCP have none
     #[arg(long, default_value_t = 921_600)]

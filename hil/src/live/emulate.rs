@@ -10,6 +10,7 @@ use crate::board::emulated::{Emulated, Firmware};
 use crate::board::{Board, BoardError, FirmwareLog};
 use crate::flight::wire::Wire;
 use crate::flight::{self, Flown, sum_up};
+use crate::gdb;
 use crate::record::{Recording, Reference, Side};
 use crate::recorder::{Glimpse, Recorder};
 use crate::scenario::{Conditions, Route, Scenario, Spacing};
@@ -18,9 +19,10 @@ use crate::summary::{LiveFigures, Summary};
 use super::endpoint::PoseSource;
 use super::frames::Frames;
 use super::pace::Pacer;
-use super::port::Port;
+use super::port::{News, Port};
 use super::pose::{Eyes, Seen};
 use super::scribe::{Notice, Scribe};
+use super::stop::Stop;
 use super::watch::{self, Turn, Watch};
 use super::{Common, LiveError};
 
@@ -40,6 +42,8 @@ pub struct EmulateSetup<'s> {
     pub seed: u64,
     /// Where the camera's pose comes from.
     pub pose: PoseSource,
+    /// The port on which a GDB is served, if one is; 0 takes any.
+    pub gdb: Option<u16>,
 }
 
 /// Emulates the board until somebody asks to end, or the limit.
@@ -69,6 +73,9 @@ pub fn emulate(setup: &EmulateSetup, say: &dyn Fn(Notice)) -> Result<Flown, Live
         stood_on_belief: false,
         now_ms: 0,
         blank,
+        gdb: setup.gdb.map(gdb::Server::open).transpose()?,
+        backlog: Backlog::default(),
+        stop: setup.common.stop,
     };
     session.announce();
     let mut pacer = Pacer::new(setup.common.speed);
@@ -78,6 +85,7 @@ pub fn emulate(setup: &EmulateSetup, say: &dyn Fn(Notice)) -> Result<Flown, Live
             session.scribe.behind(session.now_ms, late);
         }
         session.step()?;
+        pacer.stood_still(session.take_halted());
     }
     session.finish(scenario, &firmware, setup, &pacer)
 }
@@ -110,6 +118,17 @@ struct Session<'s, 'f> {
     now_ms: u64,
     /// A recording in which nothing has happened.
     blank: Recording,
+    gdb: Option<gdb::Server<'f>>,
+    backlog: Backlog,
+    /// Asks to end.
+    stop: &'s Stop,
+}
+
+/// What came over the link while a GDB had the board halted.
+#[derive(Default)]
+struct Backlog {
+    bytes: Vec<u8>,
+    news: Vec<News>,
 }
 
 impl Session<'_, '_> {
@@ -117,12 +136,18 @@ impl Session<'_, '_> {
         let (link, pose) = (self.link.place().to_owned(), self.eyes.place());
         self.scribe.tell(0, "Link", link);
         self.scribe.tell(0, "Pose", pose);
+        if let Some(gdb) = &self.gdb {
+            let place = gdb.place();
+            let text = format!("listening on {place} (target remote {place})");
+            self.scribe.tell(0, "GDB", text);
+        }
     }
 
     /// One millisecond.
     fn step(&mut self) -> Result<(), BoardError> {
-        let mut received = Vec::new();
-        for news in self.link.poll(&mut received) {
+        let Backlog { bytes, news } = std::mem::take(&mut self.backlog);
+        let mut received = bytes;
+        for news in news.into_iter().chain(self.link.poll(&mut received)) {
             self.scribe.link_news(self.now_ms, Side::Autopilot, news);
         }
         for seen in self.eyes.poll(self.now_ms) {
@@ -133,12 +158,41 @@ impl Session<'_, '_> {
         }
         self.board.look_from(self.eyes.camera(self.now_ms));
         self.board.transmit(&received);
-        self.board.advance()?;
+        self.advance()?;
         self.answer();
         self.log();
         self.note();
         self.now_ms += 1;
         Ok(())
+    }
+
+    /// Runs the board for the millisecond. While a GDB has it halted, the link is kept from overflowing.
+    fn advance(&mut self) -> Result<(), BoardError> {
+        let Some(gdb) = &mut self.gdb else {
+            return self.board.advance();
+        };
+        let (link, backlog) = (&mut self.link, &mut self.backlog);
+        let (scribe, now_ms, stop) = (&mut self.scribe, self.now_ms, self.stop);
+        let mut tell = |news: Vec<String>| {
+            let told = news.into_iter();
+            told.for_each(|news| scribe.tell(now_ms, "GDB", news));
+        };
+        let mut attend = |news| {
+            tell(news);
+            let news = link.poll(&mut backlog.bytes);
+            backlog.news.extend(news);
+            !stop.requested()
+        };
+        let advanced = self
+            .board
+            .advance_by(|board, until| gdb.run(board, until, &mut attend));
+        tell(gdb.take_news());
+        advanced
+    }
+
+    fn take_halted(&mut self) -> Duration {
+        let gdb = self.gdb.as_mut();
+        gdb.map(gdb::Server::take_halted).unwrap_or_default()
     }
 
     fn saw(&mut self, seen: Seen) {

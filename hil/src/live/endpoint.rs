@@ -7,6 +7,8 @@ use std::str::FromStr;
 /// Where a peer of the link is met.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Endpoint {
+    /// Nobody is met: the wire is open at its other end.
+    Nowhere,
     /// A pseudo-terminal of our own; whoever opens its device is the peer.
     Pty,
     /// A serial device that is there.
@@ -34,7 +36,7 @@ pub enum PoseSource {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EndpointError {
     /// Neither of the known kinds.
-    #[error("`{0}` is none of pty, tty:PATH and tcp:PORT")]
+    #[error("`{0}` is none of pty, tty:PATH, tcp:PORT and none")]
     Kind(String),
     /// Not a pose source.
     #[error("`{0}` is neither state nor tcp:PORT")]
@@ -80,6 +82,7 @@ impl FromStr for Endpoint {
 
     fn from_str(text: &str) -> Result<Self, EndpointError> {
         match text.split_once(':') {
+            None if text == "none" => Ok(Self::Nowhere),
             None if text == "pty" => Ok(Self::Pty),
             Some(("tty", "")) => Err(EndpointError::NoPath),
             Some(("tty", path)) => Ok(Self::Tty(path.into())),
@@ -120,7 +123,7 @@ impl PoseSource {
 pub fn beside(link: &Endpoint) -> Option<TcpPort> {
     match link {
         Endpoint::Tcp(port) => port.next(),
-        Endpoint::Pty | Endpoint::Tty(_) => None,
+        Endpoint::Nowhere | Endpoint::Pty | Endpoint::Tty(_) => None,
     }
 }
 
@@ -133,6 +136,7 @@ impl fmt::Display for TcpPort {
 impl fmt::Display for Endpoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Nowhere => f.write_str("none"),
             Self::Pty => f.write_str("pty"),
             Self::Tty(path) => write!(f, "tty:{}", path.display()),
             Self::Tcp(port) => port.fmt(f),

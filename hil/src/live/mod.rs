@@ -32,6 +32,7 @@ pub use stop::Stop;
 use fake_sensors::world::WorldError;
 
 use crate::board::BoardError;
+use crate::gdb::PortError;
 
 /// A live flight that could not be flown.
 #[derive(Debug, thiserror::Error)]
@@ -45,6 +46,9 @@ pub enum LiveError {
     /// A port cannot be opened.
     #[error(transparent)]
     Port(#[from] OpenError),
+    /// The GDB server's port cannot be opened.
+    #[error(transparent)]
+    Gdb(#[from] PortError),
 }
 
 /// What both halves share of their setup.

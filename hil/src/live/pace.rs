@@ -52,6 +52,11 @@ impl Pacer {
         self.late += u64::from(late > LATE);
     }
 
+    /// The flight stood still for so long because somebody asked for it: that is no lateness.
+    pub fn stood_still(&mut self, time: Duration) {
+        self.started += time;
+    }
+
     /// How far behind the clock the flight is, where that is news: a second, and then twice as far as
     /// when it was told last.
     pub fn falls_behind(&mut self) -> Option<Duration> {
@@ -62,7 +67,7 @@ impl Pacer {
         })
     }
 
-    /// Since the start.
+    /// Since the start, but for the time that the flight stood still.
     pub fn elapsed(&self) -> Duration {
         self.started.elapsed()
     }
@@ -80,6 +85,16 @@ impl Pacer {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn time_that_stood_still_is_no_lateness() {
+        let mut pacer = Pacer::new(1.0);
+        let minute = Duration::from_secs(60);
+        pacer.started -= minute;
+        pacer.stood_still(minute);
+        pacer.wait();
+        assert!(pacer.largest < minute / 2 && pacer.elapsed() < minute / 2);
+    }
 
     #[test]
     fn falling_behind_is_told_at_a_second_and_whenever_it_has_doubled() {

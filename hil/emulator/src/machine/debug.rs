@@ -3,7 +3,7 @@
 //! It costs nothing as long as nobody uses it: only [`Machine::run_debugged`] looks at it, and with
 //! neither points nor steps that is [`Machine::run_until`].
 
-use super::{Fault, Machine, Reason};
+use super::{Fault, Machine};
 use crate::core::{Access, Core, Width};
 use crate::memory::{FLASH, FLASH_BYTES, Memory};
 use crate::time::Nanos;
@@ -174,10 +174,7 @@ impl<W: Wiring> Machine<W> {
         loop {
             let exception = self.core.exception();
             self.synchronise();
-            if let Some(refusal) = self.soc.refusal() {
-                let reason = Reason::Chip(refusal.clone());
-                return Err(self.fault(reason, self.core.pc(), self.core.register(14)));
-            }
+            self.check_chip()?;
             if self.debug.steps && self.core.exception() != exception {
                 return Ok(self.debug.pause(&self.core, Pause::Stepped));
             }

@@ -45,6 +45,22 @@ trait Meeting: fmt::Debug {
     fn lost(&mut self);
 }
 
+/// Nobody ever comes.
+#[derive(Debug)]
+struct Nobody;
+
+impl Meeting for Nobody {
+    fn seek(&mut self, _: &mut Vec<News>) -> Option<Peer> {
+        None
+    }
+
+    fn turn_away(&mut self) -> Option<News> {
+        None
+    }
+
+    fn lost(&mut self) {}
+}
+
 /// What happened at a port.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum News {
@@ -99,6 +115,7 @@ impl Port {
     /// [`OpenError`] where nobody could ever come: no such device, a port that is not ours to use.
     pub fn open(endpoint: &Endpoint, baud: u32) -> Result<Self, OpenError> {
         let opened = match endpoint {
+            Endpoint::Nowhere => Ok((Box::new(Nobody) as Box<dyn Meeting>, endpoint.to_string())),
             Endpoint::Pty => open_pty(),
             Endpoint::Tty(path) => Tty::open(path.clone(), baud).map(|tty| {
                 (
