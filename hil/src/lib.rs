@@ -27,6 +27,7 @@ pub mod live;
 pub mod look;
 pub mod metrics;
 pub mod parallel;
+pub mod profile;
 pub mod record;
 pub mod recorder;
 pub mod report;

@@ -77,6 +77,7 @@ impl PanoramaMap {
     }
 
     /// The same, and the mean luma of the horizon band, which costs nothing beside it.
+    #[inline(never)]
     pub fn horizon_and_band(&self, frame: &[u8], heading: f32) -> (Horizon, f32) {
         let columns = heading * (BEARINGS as f32 / TAU);
         let whole = libm::roundf(columns);

@@ -172,6 +172,7 @@ impl Pilot {
     /// waits in its buffer and is taken for fresh at take-off.
     ///
     /// Returns what happened, in order, for the log.
+    #[inline(never)]
     pub fn on_message(&mut self, now_ms: u32, message: &Message, outbox: &mut Outbox) -> Events {
         match message {
             Message::Command(command) => self.on_command(command, outbox),

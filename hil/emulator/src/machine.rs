@@ -201,6 +201,11 @@ impl<W: Wiring> Machine<W> {
         self.soc.wiring_mut()
     }
 
+    /// The image in flash.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
     /// Flash and RAM.
     pub fn memory(&self) -> &Memory {
         &self.memory

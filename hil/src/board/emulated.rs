@@ -1,7 +1,9 @@
 //! The emulated board: the image that would be flashed, on an STM32F407 in software.
 
+use emulator::core::Cycle;
 use emulator::image::{Image, ImageError};
 use emulator::machine::Machine;
+use emulator::memory::Memory;
 use emulator::soc::ResetCause;
 use emulator::time::Nanos;
 use emulator::wiring::Wiring;
@@ -10,6 +12,7 @@ use sensor::tcm8230::SETTLING_FRAMES;
 
 use super::camera::Camera;
 use super::firmware_log::LogTable;
+use super::observer::{Interest, Observer};
 use super::probe::Probe;
 use super::sabotage::Sabotaged;
 use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog};
@@ -18,7 +21,7 @@ use crate::scenario::{CameraTrouble, LensPage};
 /// The crystal on the flight board, hertz.
 const CRYSTAL_HZ: u32 = 8_000_000;
 /// The UART that the autopilot is on.
-const LINK_USART: u8 = 2;
+pub const LINK_USART: u8 = 2;
 /// From power-on to the first camera frame; a healthy board needs some 50 ms.
 const FIRST_FRAME_TIMEOUT: Nanos = Nanos::from_millis(1_000);
 /// From the end of a frame to the end of its processing, at most, milliseconds.
@@ -67,6 +70,11 @@ impl Firmware {
         Ok(found.ok_or(BoardError::NoSymbol(symbol))?.address)
     }
 
+    /// The image.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
     /// A probe for the image's log.
     pub fn probe(&self) -> Result<Probe<'_>, BoardError> {
         Probe::new(&self.image, &self.table)
@@ -102,6 +110,7 @@ pub struct Emulated<'f> {
     machine: Machine<Sabotaged>,
     /// What is to happen to the camera's wires.
     trouble: Option<CameraTrouble>,
+    observer: Option<(&'f mut dyn Observer, Interest)>,
     probe: Probe<'f>,
     log: Vec<FirmwareLog>,
     traced_cycles: Vec<u32>,
@@ -127,6 +136,7 @@ impl<'f> Emulated<'f> {
         let mut board = Self {
             probe: firmware.probe()?,
             trouble: None,
+            observer: None,
             log: Vec::new(),
             traced_cycles: Vec::new(),
             frames_logged: 0,
@@ -151,6 +161,55 @@ impl<'f> Emulated<'f> {
     #[must_use]
     pub fn with_trouble(self, trouble: Option<CameraTrouble>) -> Self {
         Self { trouble, ..self }
+    }
+
+    /// What the chip's memories hold now.
+    pub fn memory(&self) -> &Memory {
+        self.machine.memory()
+    }
+
+    /// The image that it runs.
+    pub fn image(&self) -> &Image {
+        self.machine.image()
+    }
+
+    /// The core's cycles since power-on.
+    pub fn cycles(&self) -> Cycle {
+        self.machine.cycles()
+    }
+
+    /// The core's clock, hertz.
+    pub fn core_hz(&self) -> u32 {
+        self.machine.hclk_hz()
+    }
+
+    /// Lets somebody watch from now on.
+    pub fn watched_by(mut self, observer: &'f mut dyn Observer) -> Result<Self, BoardError> {
+        let interest = observer.begin(&self)?;
+        if let Interest::Events(functions) = &interest {
+            for function in functions {
+                self.machine.trace_calls(*function);
+            }
+            self.machine.start_trace();
+        }
+        self.observer = Some((observer, interest));
+        Ok(self)
+    }
+
+    /// Runs the machine, and lets the observer see it.
+    fn run(&mut self, until: Nanos) -> Result<(), BoardError> {
+        match &mut self.observer {
+            Some((observer, Interest::Steps)) => {
+                let see = |step| observer.step(step);
+                self.machine.run_stepwise(until, see)?;
+            }
+            Some((observer, Interest::Events(_))) => {
+                self.machine.run_until(until)?;
+                observer.events(&self.machine.take_trace());
+            }
+            None => self.machine.run_until(until)?,
+        }
+        Ok(())
     }
 
     /// Begins and ends what is to happen in the millisecond that begins now.
@@ -264,7 +323,7 @@ impl Board for Emulated<'_> {
     }
 
     fn advance(&mut self) -> Result<(), BoardError> {
-        self.advance_by(|board, until| Ok(board.machine.run_until(until)?))
+        self.advance_by(Self::run)
     }
 
     fn receive(&mut self, into: &mut Vec<u8>) {

@@ -5,6 +5,7 @@ pub mod camera;
 pub mod emulated;
 mod firmware_log;
 pub mod native;
+pub mod observer;
 pub mod origin;
 mod poses;
 pub mod probe;

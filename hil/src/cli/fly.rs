@@ -154,7 +154,7 @@ impl Image {
         Ok(Self { elf, bytes })
     }
 
-    fn failure(&self, error: FlightError) -> Failure {
+    pub(super) fn failure(&self, error: FlightError) -> Failure {
         format!("{}: {error}", self.elf.display()).into()
     }
 }

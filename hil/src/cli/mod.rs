@@ -23,6 +23,7 @@ mod import_cf;
 mod link_check;
 mod live;
 mod look;
+mod profile;
 mod steps;
 mod world;
 
@@ -77,6 +78,8 @@ enum Verb {
     ImportCf(import_cf::Arguments),
     /// Holds the link's codec against records of another implementation's
     LinkCheck(link_check::Arguments),
+    /// Profiles a flight: cycles by stage, task and interrupt
+    Profile(profile::Arguments),
     /// Draws what the camera sees from a place, and what of it is remembered
     Look(look::Arguments),
     /// Draws what it sees along a route
@@ -112,6 +115,7 @@ pub fn main() -> ExitCode {
         Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),
         Verb::ImportCf(arguments) => import_cf::run(&arguments, &console),
         Verb::LinkCheck(arguments) => link_check::run(&arguments, &console),
+        Verb::Profile(arguments) => profile::run(&arguments, &console),
         Verb::Look(arguments) => look::run(&arguments, &console),
         Verb::Film(arguments) => film::run(&arguments, &console),
         Verb::Drift(arguments) => drift::run(&arguments, &console),

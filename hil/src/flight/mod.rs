@@ -20,6 +20,7 @@ use pilot::Pilot;
 use crate::board::camera::Camera;
 use crate::board::emulated::{Emulated, Firmware};
 use crate::board::native::{EXTCLK_HZ, Native};
+use crate::board::observer::Observer;
 use crate::board::{Board, BoardError};
 use crate::record::{Recording, Side, WallSegment, What};
 use crate::recorder::Recorder;
@@ -114,16 +115,39 @@ pub fn fly_emulated(
     elf: &[u8],
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Flown, FlightError> {
-    let started = Instant::now();
     let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
+    fly_firmware(scenario, &firmware, None, progress)
+}
+
+/// Flies a scenario on an emulated board that somebody watches. `firmware` has the scenario's lens
+/// record.
+pub fn fly_watched<'w>(
+    scenario: &Scenario,
+    firmware: &'w Firmware,
+    observer: &'w mut dyn Observer,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Flown, FlightError> {
+    fly_firmware(scenario, firmware, Some(observer), progress)
+}
+
+fn fly_firmware<'w>(
+    scenario: &Scenario,
+    firmware: &'w Firmware,
+    observer: Option<&'w mut dyn Observer>,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Flown, FlightError> {
+    let started = Instant::now();
     let world = World::open(&scenario.world, scenario.seed)?;
-    let mut board = Emulated::boot(&firmware, camera(scenario, &world, Tcm8230::default()))?
+    let mut board = Emulated::boot(firmware, camera(scenario, &world, Tcm8230::default()))?
         .with_trouble(scenario.conditions.camera);
+    if let Some(observer) = observer {
+        board = board.watched_by(observer)?;
+    }
     fly(
         scenario,
         &world,
         &mut board,
-        Some(&firmware),
+        Some(firmware),
         started,
         progress,
     )

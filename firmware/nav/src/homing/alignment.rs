@@ -19,6 +19,7 @@ pub fn align128(current: &Spectrum, stored: &StoredCoefficients, weights: &Weigh
 }
 
 /// The best rotation within ±`bound` steps (at most half a turn).
+#[inline(never)]
 pub fn align_within(
     current: &Spectrum,
     stored: &StoredCoefficients,

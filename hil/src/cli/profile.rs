@@ -1,0 +1,156 @@
+//! `hil profile`: where the cycles of a flight go.
+
+use std::fs;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::Failure;
+use super::console::Console;
+use super::fly::{Image, ScenarioArguments};
+use crate::profile::{self, Profile, Profiled, Quantiles, Stage, Window};
+use crate::report::number::grouped;
+
+/// Misses that are told in words.
+const MISSES_TOLD: usize = 10;
+
+/// Options of `hil profile`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    hil profile                                    the default flight\n  \
+    hil profile --route corner --json              a short one, for scripts\n  \
+    hil profile --trace flight.json                two seconds of it, to be opened in ui.perfetto.dev\n  \
+    hil profile --trace all.json --window 0,600    all of it\n\n\
+    Cycles are the emulated core's, read at the functions of the image: nothing is added to the firmware. Interrupts are\n\
+    charged to themselves, a stage within another to itself. They are modelled: silicon may differ by 10 to 15 % on code\n\
+    that computes and by 25 % on drivers (see `hil calibrate-timing`).\n\
+    Exit code 0: no frame missed its deadline. 1: one did. 2: the flight could not be flown.")]
+pub struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioArguments,
+    /// Seed of world, sensors and camera noise
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Writes tasks, interrupts, DMA, link and frames as one time line, in Chrome's trace format
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+    /// The time line's piece of the flight: from a second on and, after a comma, for how many
+    #[arg(long, value_name = "SECOND[,SECONDS]", default_value = "60,2", value_parser = parse_window, requires = "trace")]
+    window: Window,
+    /// Ends with one JSON object: frames, stages, vision, pixel_to_vector_s, load, missed and more
+    #[arg(long)]
+    json: bool,
+    /// An image that is already built [default: this checkout's, built first]
+    #[arg(long, value_name = "ELF")]
+    firmware: Option<PathBuf>,
+}
+
+fn parse_window(text: &str) -> Result<Window, String> {
+    let (from, length) = text.split_once(',').unwrap_or((text, "2"));
+    let number = |text: &str| {
+        text.parse()
+            .ok()
+            .filter(|s: &f64| s.is_finite() && *s >= 0.0)
+    };
+    match (number(from), number(length)) {
+        (Some(from_s), Some(for_s)) => Ok(Window { from_s, for_s }),
+        _ => Err("seconds of the flight, as in 60 or 60,2".to_owned()),
+    }
+}
+
+pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
+    let image = Image::get(arguments.firmware.clone(), console)?;
+    let scenario = arguments.scenario.scenario(arguments.seed);
+    let window = arguments.trace.is_some().then_some(arguments.window);
+    let mut bar = console.progress("Profiling", 1000);
+    let profiled = profile::fly(&scenario, &image.bytes, window, &mut |progress| {
+        bar.set((1000.0 * progress.fraction) as u64, || progress.to_string());
+    });
+    bar.finish();
+    let profiled = profiled.map_err(|error| image.failure(error))?;
+    if let (Some(path), Some(timeline)) = (&arguments.trace, &profiled.timeline) {
+        fs::write(path, timeline.to_json()?)
+            .map_err(|error| format!("{}: {error}", path.display()))?;
+        console.status("Trace", &path.display().to_string());
+    }
+    if arguments.json {
+        console.result(&serde_json::to_string(&profiled.profile)?)?;
+    } else {
+        console.result(&in_words(&profiled))?;
+    }
+    Ok(profiled.profile.missed == 0)
+}
+
+fn in_words(profiled: &Profiled) -> String {
+    let profile = &profiled.profile;
+    let mut lines = vec![format!(
+        "{:<16}{:>8}{:>10}{:>10}{:>10}{:>10}{:>11}",
+        "stage, cycles", "frames", "p50", "p90", "p99", "max", "p50, us"
+    )];
+    let stages = Stage::ALL.map(|stage| (stage.name(), profile.stages[stage.name()]));
+    let rows = stages
+        .into_iter()
+        .chain([("vision in all", profile.vision)]);
+    lines.extend(rows.map(|(name, quantiles)| row(name, &quantiles, profile.core_hz)));
+    let milliseconds = |q: &Quantiles<f64>| {
+        let [p50, p99, max] = [q.p50, q.p99, q.max].map(|seconds| 1.0e3 * seconds);
+        format!("p50 {p50:.3} ms, p99 {p99:.3} ms, max {max:.3} ms")
+    };
+    lines.push(format!(
+        "pixel to vector   {}  (without the view's wait for a STATE)",
+        milliseconds(&profile.pixel_to_vector_s)
+    ));
+    lines.push(format!(
+        "STATE to vector   {}",
+        milliseconds(&profile.answer_s)
+    ));
+    lines.extend(loads(profile));
+    lines.push(format!(
+        "deadlines         {} of {} frames missed; least margin {:.3} ms",
+        profile.missed,
+        profile.frames,
+        1.0e3 * profile.least_margin_s
+    ));
+    for miss in profile.misses.iter().take(MISSES_TOLD) {
+        lines.push(format!("  at {:.3} s: {}", miss.at_s, miss.running));
+    }
+    let model = profile.model;
+    lines.push(format!("{} (error: {})", model.source, model.error));
+    lines.push(format!("assumed: {}", model.assumptions));
+    lines.join("\n")
+}
+
+fn row(name: &str, quantiles: &Quantiles<u64>, core_hz: u32) -> String {
+    let microseconds = quantiles.p50 as f64 * 1.0e6 / f64::from(core_hz);
+    format!(
+        "  {name:<14}{:>8}{:>10}{:>10}{:>10}{:>10}{microseconds:>11.1}",
+        grouped(quantiles.count as u64),
+        grouped(quantiles.p50),
+        grouped(quantiles.p90),
+        grouped(quantiles.p99),
+        grouped(quantiles.max),
+    )
+}
+
+fn loads(profile: &Profile) -> Vec<String> {
+    let mut lines = vec![format!(
+        "load              {:.2} %, woken {:.0} times a second",
+        100.0 * profile.load,
+        profile.wakeups_per_s
+    )];
+    for (kind, loads) in [("task", &profile.tasks), ("interrupt", &profile.interrupts)] {
+        for (name, load) in loads {
+            lines.push(format!(
+                "  {kind:<10}{name:<22}{:>8.3} %{:>9.1} a second",
+                100.0 * load.share,
+                load.per_s
+            ));
+        }
+    }
+    lines.push(format!(
+        "  {:<32}{:>8.3} %",
+        "executor, outside tasks",
+        100.0 * profile.executor
+    ));
+    lines
+}

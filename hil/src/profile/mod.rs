@@ -1,0 +1,54 @@
+//! Where the cycles of a flight go: from outside, by the emulated core's counter at the functions of
+//! the image. Nothing is added to the firmware, and its flight is the same to the byte.
+
+mod figures;
+mod frames;
+mod ledger;
+mod profiler;
+mod stage;
+mod symbols;
+mod timeline;
+mod wires;
+
+use crate::board::emulated::Firmware;
+use crate::flight::{self, FlightError, Flown, Progress};
+use crate::scenario::Scenario;
+
+pub use figures::{Load, Model, Profile, Quantiles};
+pub use frames::{FrameProfile, Miss};
+pub use profiler::Profiler;
+pub use stage::Stage;
+pub use symbols::{Function, Symbols};
+pub use timeline::{Timeline, Window};
+
+/// A flight with its profile.
+#[derive(Clone, Debug)]
+pub struct Profiled {
+    /// The flight.
+    pub flown: Flown,
+    /// Over all frames.
+    pub profile: Profile,
+    /// Frame by frame.
+    pub frames: Vec<FrameProfile>,
+    /// The time line of the window that was asked for, in Chrome's trace format.
+    pub timeline: Option<Timeline>,
+}
+
+/// Flies a scenario on the emulated board and profiles it; draws up the time line of a window.
+pub fn fly(
+    scenario: &Scenario,
+    elf: &[u8],
+    window: Option<Window>,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Profiled, FlightError> {
+    let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
+    let mut profiler = Profiler::new(window);
+    let flown = flight::fly_watched(scenario, &firmware, &mut profiler, progress)?;
+    let (profile, frames, timeline) = profiler.finish();
+    Ok(Profiled {
+        flown,
+        profile,
+        frames,
+        timeline,
+    })
+}
