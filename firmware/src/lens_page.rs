@@ -18,6 +18,9 @@ const _: () = assert!(
         && GEOMETRY.luma_offset == FRAME_LAYOUT.luma_offset
 );
 
+/// Where the page begins: what `memory.x` says, for readers of the identification.
+pub const ADDRESS: u32 = 0x080e_0000;
+
 /// The lens of this unit, or the default where the page has none that can be used. Says which, in one
 /// line of the log.
 pub fn lens() -> LensCalibration {

@@ -6,9 +6,10 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use embassy_time::{Duration, Instant};
 
+use crate::board::pins;
 use crate::capture::Fault;
-use crate::clocks;
 use crate::counters::COUNTERS;
+use crate::{clocks, identity};
 
 defmt::timestamp!("{=u64:us}", timestamp_us());
 
@@ -24,12 +25,15 @@ fn timestamp_us() -> u64 {
     }
 }
 
-/// Once, as soon as the HAL is up: which firmware this is and how fast its cycle counter runs.
+/// Once, as soon as the HAL is up: which firmware this is, what it may do, on which board, and how fast
+/// its cycle counter runs.
 pub fn boot() {
     CLOCK_RUNS.store(true, Ordering::Relaxed);
     defmt::info!(
-        "cataglyphis {=str} boot, clock {=u32} Hz",
+        "cataglyphis {=str} boot, {=str} image for the {=str} board, clock {=u32} Hz",
         env!("CARGO_PKG_VERSION"),
+        identity::KIND.name(),
+        pins::NAME.name(),
         clocks::CORE_HZ
     );
 }
@@ -120,5 +124,28 @@ pub fn health() {
         if count > 0 {
             defmt::info!("capture faults {=str} {=u32}", fault.name(), count);
         }
+    }
+}
+
+/// Once a second while a host sends frames over serial: what became of them since boot.
+#[cfg(feature = "rig")]
+pub fn serial_frames(counts: frames::Counts) {
+    defmt::info!(
+        "serial frames whole {=u32} torn {=u32} late {=u32} repeated {=u32} busy {=u32} corrupt records {=u32}",
+        counts.whole,
+        counts.torn,
+        counts.late,
+        counts.repeated,
+        counts.busy,
+        counts.corrupt
+    );
+}
+
+/// When a host takes the camera's place, or gives it back.
+#[cfg(feature = "rig")]
+pub fn source(source: frames::Source) {
+    match source {
+        frames::Source::Camera => defmt::info!("frames come from the camera"),
+        frames::Source::Serial => defmt::info!("frames come over serial"),
     }
 }

@@ -10,6 +10,9 @@
 //!                                            +------------> exposure -> I2C2
 //! health: the watchdog is fed when all of them live
 //! ```
+//!
+//! In a rig image (cargo feature `rig`) frames may come over USART3 in the camera's place; the task
+//! `serial_frames` then stands where `camera` does, and hands on to it while no host asks.
 #![no_std]
 #![no_main]
 
@@ -19,11 +22,14 @@ mod check_in;
 mod clocks;
 mod counters;
 mod executors;
+mod identity;
 mod lens_page;
 mod link_port;
 mod log;
 mod retained;
 mod sensor_power;
+#[cfg(feature = "rig")]
+mod serial_port;
 mod tasks;
 mod wires;
 
@@ -67,7 +73,14 @@ async fn main(spawner: Spawner) {
         pilot.pilot().exposure()
     )));
     let capture = Capture::start(board.camera);
+    #[cfg(not(feature = "rig"))]
     urgent.spawn(defmt::unwrap!(tasks::camera::camera(capture)));
+    #[cfg(feature = "rig")]
+    urgent.spawn(defmt::unwrap!(tasks::serial_frames::serial_frames(
+        capture,
+        defmt::unwrap!(serial_port::open(board.serial)),
+        pilot.pilot().exposure()
+    )));
     spawner.spawn(defmt::unwrap!(tasks::vision::vision(pilot)));
     spawner.spawn(defmt::unwrap!(tasks::health::health(board.watchdog)));
 }

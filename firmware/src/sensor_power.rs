@@ -1,18 +1,16 @@
 //! The image sensor's clock, reset and bus, in the order and with the waits of its data sheet
 //! (TCM8230MD v1.20, power-on sequence). Its supplies are up before the processor runs.
 
-use embassy_stm32::gpio::{Level, Output, OutputOpenDrain, OutputType, Speed};
+use embassy_stm32::gpio::{Level, Output, OutputOpenDrain, Speed};
 use embassy_stm32::i2c::{self, I2c, Master};
 use embassy_stm32::mode::Async;
-use embassy_stm32::peripherals::TIM3;
 use embassy_stm32::time::Hertz;
-use embassy_stm32::timer::low_level::CountingMode;
-use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm};
 use embassy_time::{Duration, Timer};
 
+use crate::board::pins::{CLOCK_CHANNEL, SensorClock};
 use crate::board::{Irqs, SensorBus, SensorPort};
 
-/// EXTCLK: the timer's 84 MHz by four, an even divider for the 45 to 55 % duty the sensor wants.
+/// EXTCLK: the timer's 84 or 168 MHz by an even divider, for the 45 to 55 % duty the sensor wants.
 /// Gives 25.64 frames per second and lines of 74.3 us.
 pub const EXTCLK_HZ: u32 = 21_000_000;
 
@@ -30,7 +28,7 @@ const HALF_BIT: Duration = Duration::from_micros(5);
 
 /// Who holds the sensor's clock and reset, and lends its bus.
 pub struct SensorPower {
-    clock: SimplePwm<'static, TIM3>,
+    clock: SensorClock,
     reset: Output<'static>,
     bus: SensorBus,
 }
@@ -38,17 +36,8 @@ pub struct SensorPower {
 impl SensorPower {
     /// The sensor in reset, without a clock.
     pub fn new(port: SensorPort) -> Self {
-        let pin = PwmPin::new(port.clock_pin, OutputType::PushPull);
-        let mut clock = SimplePwm::new(
-            port.clock,
-            None,
-            Some(pin),
-            None,
-            None,
-            Hertz(EXTCLK_HZ),
-            CountingMode::EdgeAlignedUp,
-        );
-        clock.ch2().set_duty_cycle_fraction(1, 2);
+        let mut clock = port.clock.at(Hertz(EXTCLK_HZ));
+        clock.channel(CLOCK_CHANNEL).set_duty_cycle_fraction(1, 2);
         Self {
             clock,
             reset: Output::new(port.reset, Level::Low, Speed::Low),
@@ -59,7 +48,7 @@ impl SensorPower {
     /// Resets the sensor and gives the bus on which it then answers.
     pub async fn restart(&mut self) -> I2c<'_, Async, Master> {
         self.reset.set_low();
-        self.clock.ch2().enable();
+        self.clock.channel(CLOCK_CHANNEL).enable();
         Timer::after(RESET_TIME).await;
         self.reset.set_high();
         Timer::after(WAKE_TIME).await;

@@ -42,3 +42,8 @@ pub static SENSOR_STARTED: Signal<CriticalSectionRawMutex, u8> = Signal::new();
 
 /// Vision to the link's transmitter. Two periods of what the autopilot can take.
 pub static OUTGOING: Pipe<CriticalSectionRawMutex, { 2 * PERIOD_BYTES }> = Pipe::new();
+
+/// Vision to the task that takes frames over serial: the board's number of the frame it has looked at,
+/// and the exposure it wants.
+#[cfg(feature = "rig")]
+pub static SEEN: Signal<CriticalSectionRawMutex, (u32, Exposure)> = Signal::new();

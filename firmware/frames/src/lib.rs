@@ -62,7 +62,7 @@ mod verdict;
 pub use identity::{BoardName, Identity, ImageKind, VERSION_BYTES};
 pub use pieces::{Piece, Pieces};
 pub use receiver::{Event, Receiver};
-pub use record::{Damage, Encoded, MAX_RECORD_BYTES};
+pub use record::{Damage, Encoded, MAX_MESSAGE_BYTES, MAX_RECORD_BYTES, Message};
 pub use reply::{Replies, Reply};
 pub use request::Request;
 pub use shape::Shape;

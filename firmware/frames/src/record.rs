@@ -3,6 +3,7 @@
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use heapless::Vec;
 
+use crate::identity::Identity;
 use crate::stuffing::{stuff, stuffed_len};
 
 /// The most bytes of a frame's piece behind its header: one record in 24 is lost to headers and
@@ -16,8 +17,14 @@ pub(crate) const HEAD_BYTES: usize = 5;
 pub const MAX_RECORD_BYTES: usize =
     stuffed_len(HEAD_BYTES + crate::pieces::HEADER_BYTES + PIECE_PAYLOAD_BYTES);
 
-/// A record as it goes on the wire.
+/// The most bytes of a question or an answer on the wire, delimiters included.
+pub const MAX_MESSAGE_BYTES: usize = stuffed_len(HEAD_BYTES + Identity::BYTES);
+
+/// The piece of a frame as it goes on the wire.
 pub type Encoded = Vec<u8, MAX_RECORD_BYTES>;
+
+/// A question or an answer as it goes on the wire.
+pub type Message = Vec<u8, MAX_MESSAGE_BYTES>;
 
 /// The check sum of all records. It finds every burst of up to 32 bits and misses one in 4 billion of
 /// other damages.
@@ -43,7 +50,7 @@ pub(crate) const fn digest() -> Digest {
 }
 
 /// The record of `kind` whose body is these parts.
-pub(crate) fn seal(kind: u8, parts: [&[u8]; 2]) -> Encoded {
+pub(crate) fn seal<const N: usize>(kind: u8, parts: [&[u8]; 2]) -> Vec<u8, N> {
     let mut sum = digest();
     sum.update(&[kind]);
     for part in parts {
@@ -51,7 +58,7 @@ pub(crate) fn seal(kind: u8, parts: [&[u8]; 2]) -> Encoded {
     }
     let [first, second] = parts;
     let sum = sum.finalize().to_le_bytes();
-    let mut encoded = Encoded::new();
+    let mut encoded = Vec::new();
     stuff(&[&sum, &[kind], first, second], &mut encoded);
     encoded
 }

@@ -3,7 +3,7 @@
 use heapless::Vec;
 
 use crate::identity::Identity;
-use crate::record::{Damage, Encoded, HEAD_BYTES, digest, seal};
+use crate::record::{Damage, HEAD_BYTES, Message, digest, seal};
 use crate::stuffing::{Unstuffed, Unstuffer};
 use crate::verdict::{Counts, Source, Verdict};
 
@@ -39,7 +39,7 @@ pub enum Reply {
 
 impl Reply {
     /// The bytes for the wire.
-    pub fn encode(&self) -> Encoded {
+    pub fn encode(&self) -> Message {
         match self {
             Self::Identity(identity) => seal(IDENTITY, [&identity.encode(), &[]]),
             Self::Source(source) => seal(SOURCE, [&[*source as u8], &[]]),

@@ -1,6 +1,6 @@
 //! What the host asks for.
 
-use crate::record::{Encoded, seal};
+use crate::record::{Message, seal};
 
 const IDENTIFY: u8 = 0x01;
 const BEGIN: u8 = 0x02;
@@ -30,7 +30,7 @@ impl Request {
     pub(crate) const MAX_BODY_BYTES: usize = 2;
 
     /// The bytes for the wire.
-    pub fn encode(&self) -> Encoded {
+    pub fn encode(&self) -> Message {
         match self {
             Self::Identify => seal(IDENTIFY, [&[], &[]]),
             Self::Begin { fresh_ms } => seal(BEGIN, [&fresh_ms.to_le_bytes(), &[]]),

@@ -62,3 +62,13 @@ pub unsafe fn bytes(buffer: Buffer) -> &'static Bytes {
     // SAFETY: in bounds, aligned, and initialised by the DMA as the caller promises.
     unsafe { &*(address(buffer) as *const Bytes) }
 }
+
+/// The bytes of a buffer, to be written.
+///
+/// # Safety
+/// The DMA must be off, and nobody may read the buffer as long as the reference lives.
+#[cfg(feature = "rig")]
+pub unsafe fn bytes_mut(buffer: Buffer) -> &'static mut MaybeUninit<Bytes> {
+    // SAFETY: in bounds, aligned, and nobody else's as the caller promises.
+    unsafe { &mut *(address(buffer) as *mut MaybeUninit<Bytes>) }
+}

@@ -52,6 +52,12 @@ impl State {
         )
     }
 
+    /// One more whole frame, which no interrupt brought; its number.
+    #[cfg(feature = "rig")]
+    pub fn count_frame(&self) -> u32 {
+        self.frames.fetch_add(1, Ordering::Release).wrapping_add(1)
+    }
+
     /// Whether the buffer of frame `number` was run over while it was the newest.
     pub fn is_spoilt(&self, number: u32) -> bool {
         self.spoilt.load(Ordering::Relaxed) == number

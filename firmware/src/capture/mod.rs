@@ -45,6 +45,10 @@
 //! - `embassy-time`, and a sensor with hardware sync whose geometry and times stand in `buffers`
 //!   and `timing`.
 //!
+//! # Frames from elsewhere
+//! With the cargo feature `rig`, `Capture::divert` stops interface and DMA and hands out the buffers
+//! to whoever has frames of another source; readers see no difference.
+//!
 //! # Cancelling
 //! A dropped [`Capture::next`] loses nothing: frames and faults wait for the next call, and a frame
 //! that a newer one overtakes is counted as [missed](Frame::missed). A dropped [`Capture`] stops
@@ -53,6 +57,8 @@
 mod buffers;
 mod fault;
 mod hardware;
+#[cfg(feature = "rig")]
+mod injection;
 mod interrupt;
 mod port;
 mod timing;
@@ -65,6 +71,8 @@ use embassy_time::{Instant, with_deadline};
 
 use buffers::{FRAME_WORDS, buffer_of};
 pub use fault::Fault;
+#[cfg(feature = "rig")]
+pub use injection::Injection;
 use interrupt::STATE;
 pub use interrupt::{DmaInterruptHandler, InterruptHandler};
 pub use port::{Port, pin};
@@ -206,7 +214,13 @@ impl Frame {
         // runs the DMA fills the other buffer, for the time of one frame; a reader slower than
         // that sees bytes of two frames, which are bytes all the same, and is told.
         let bytes = unsafe { buffers::bytes(buffer_of(self.number)) };
+        #[cfg(feature = "rig")]
+        let hold = injection::Hold::of(self.number);
         let result = reader(bytes);
+        #[cfg(feature = "rig")]
+        if let Some(integrity) = hold.release() {
+            return (result, integrity);
+        }
         (result, self.integrity())
     }
 

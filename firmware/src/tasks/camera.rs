@@ -23,8 +23,14 @@ const FRAMES_AFTER_STOP: u8 = 1;
 /// Passes every frame on. It is not the deadline's keeper: the capture goes on by itself, and starts
 /// afresh by itself. A camera that stays away is counted, and no reason to stop answering the
 /// autopilot.
+#[cfg(not(feature = "rig"))]
 #[embassy_executor::task]
 pub async fn camera(mut capture: Capture) {
+    pass_frames(&mut capture).await;
+}
+
+/// What the task does. Dropped, it loses nothing but what it knows of the sensor's health.
+pub async fn pass_frames(capture: &mut Capture) -> ! {
     let mut log = log::CaptureFaults::new();
     let mut settling = 0;
     // When the sensor last did what it should; none while it is being set up.
@@ -66,7 +72,8 @@ pub async fn camera(mut capture: Capture) {
     }
 }
 
-fn pass_on(frame: Frame) {
+/// Queues a frame for vision.
+pub fn pass_on(frame: Frame) {
     if EVENTS.try_send(Event::Frame(frame)).is_err() {
         COUNTERS.queue_full.count();
         COUNTERS.frames_missed.count();

@@ -6,4 +6,6 @@ pub mod exposure;
 pub mod health;
 pub mod link_rx;
 pub mod link_tx;
+#[cfg(feature = "rig")]
+pub mod serial_frames;
 pub mod vision;

@@ -7,6 +7,8 @@ use crate::capture::{Frame, Integrity};
 use crate::check_in::{self, Member, check_in};
 use crate::counters::COUNTERS;
 use crate::retained::Retained;
+#[cfg(feature = "rig")]
+use crate::wires;
 use crate::wires::{EVENTS, EXPOSURE, Event, OUTGOING};
 use crate::{clocks, log};
 
@@ -46,6 +48,8 @@ fn see(pilot: &mut Retained, frame: Frame) {
     if let Some(wanted) = report.exposure {
         EXPOSURE.signal(wanted);
     }
+    #[cfg(feature = "rig")]
+    wires::SEEN.signal((number, pilot.pilot().exposure()));
     log::frame(number, cycles, report.mean_luma, pilot.pilot().exposure());
 }
 

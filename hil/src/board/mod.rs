@@ -11,6 +11,7 @@ mod poses;
 pub mod probe;
 mod rtt;
 pub mod sabotage;
+pub mod serial_frames;
 
 use fake_sensors::camera::Pose;
 

@@ -5,6 +5,7 @@
 
 mod autopilot;
 mod bench;
+mod build;
 mod calibrate;
 mod calibrate_timing;
 mod camera_faults;
@@ -71,7 +72,7 @@ enum Verb {
     /// Holds the emulated core's cycles against a board's, kernel by kernel
     CalibrateTiming(calibrate_timing::Arguments),
     /// Builds the firmware with whatever toolchain there is, and says which
-    Build,
+    Build(build::Arguments),
     /// Holds the homing against a file of solved problems
     HomingCheck(homing_check::Arguments),
     /// Draws the report of a real flight from the logs of cfclient
@@ -111,7 +112,7 @@ pub fn main() -> ExitCode {
         Verb::Catchment(arguments) => catchment::run(&arguments, &console),
         Verb::Calibrate(arguments) => calibrate::run(&arguments, &console),
         Verb::CalibrateTiming(arguments) => calibrate_timing::run(&arguments, &console),
-        Verb::Build => build(&console),
+        Verb::Build(arguments) => build::run(&arguments, &console),
         Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),
         Verb::ImportCf(arguments) => import_cf::run(&arguments, &console),
         Verb::LinkCheck(arguments) => link_check::run(&arguments, &console),
@@ -132,10 +133,4 @@ pub fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
-}
-
-fn build(console: &Console) -> Result<bool, Failure> {
-    let image = crate::image::build(&|line| console.status("Firmware", line))?;
-    console.result(&image.display().to_string())?;
-    Ok(true)
 }

@@ -1,17 +1,39 @@
 //! The pin map: which peripheral, pin and DMA stream does what. Nothing else names a pin.
 //!
+//! | | peripheral | pins | DMA |
+//! |---|---|---|---|
+//! | camera | DCMI | D0 to D7: PC6 to PC9, PC11, PB6, PB8, PB9; VSYNC PB7, HSYNC PA4, PIXCLK PA6 | DMA2 stream 1 |
+//! | its control | I2C2 | PB10, PB11; RESET PD2; EXTCLK as the board has it | DMA1 streams 7 and 2 |
+//! | autopilot | USART2 | PA2, PA3 | DMA1 streams 6 and 5 |
+//! | frames over serial, in a rig image | USART3 | PD8, PD9 | DMA1 streams 3 and 1 |
+//!
 //! DCMI, I2C and clock stand on the pins of TU Delft's stereo board (STM32F405), and, but for the
-//! clock, of published STM32F4DISCOVERY camera wirings; USART2 stays free for the autopilot.
-//! USART2 and I2C2 use DMA1: DMA2 must not serve an APB2 peripheral while it moves pixels (data
+//! clock, of published STM32F4DISCOVERY camera wirings; USART2 stays free for the autopilot. Of
+//! USART3's other pins, PC10 and PC11, the second is D4. What differs between the boards is in
+//! `pins`: one of two files, by cargo feature.
+//!
+//! The UARTs and I2C2 use DMA1: DMA2 must not serve an APB2 peripheral while it moves pixels (data
 //! corruption, errata sheet ES0182).
 
+#[cfg(not(any(feature = "board-flight", feature = "board-discovery")))]
+compile_error!("no board: choose board-flight or board-discovery");
+#[cfg(all(feature = "board-flight", feature = "board-discovery"))]
+compile_error!("two boards: choose board-flight or board-discovery (--no-default-features)");
+
+#[cfg_attr(feature = "board-flight", path = "flight.rs")]
+#[cfg_attr(not(feature = "board-flight"), path = "discovery.rs")]
+pub mod pins;
+#[cfg(feature = "rig")]
+mod rig;
+
 use embassy_stm32::peripherals::{
-    DMA1_CH2, DMA1_CH5, DMA1_CH6, DMA1_CH7, I2C2, IWDG, PA2, PA3, PA7, PB10, PB11, PD2, TIM3,
-    USART2,
+    DMA1_CH2, DMA1_CH5, DMA1_CH6, DMA1_CH7, I2C2, IWDG, PA2, PA3, PB10, PB11, PD2, USART2,
 };
 use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, i2c, usart};
 
 use crate::capture;
+#[cfg(feature = "rig")]
+pub use rig::SerialPort;
 
 bind_interrupts!(
     /// Interrupt vectors and who serves them.
@@ -25,15 +47,19 @@ bind_interrupts!(
         DMA1_STREAM5 => dma::InterruptHandler<DMA1_CH5>;
         DMA1_STREAM6 => dma::InterruptHandler<DMA1_CH6>;
         DMA1_STREAM7 => dma::InterruptHandler<DMA1_CH7>;
+        #[cfg(feature = "rig")]
+        USART3 => usart::InterruptHandler<embassy_stm32::peripherals::USART3>;
+        #[cfg(feature = "rig")]
+        DMA1_STREAM1 => dma::InterruptHandler<embassy_stm32::peripherals::DMA1_CH1>;
+        #[cfg(feature = "rig")]
+        DMA1_STREAM3 => dma::InterruptHandler<embassy_stm32::peripherals::DMA1_CH3>;
     }
 );
 
 /// The image sensor's clock, reset and I2C.
 pub struct SensorPort {
-    /// Makes EXTCLK on `clock_pin` (channel 2).
-    pub clock: Peri<'static, TIM3>,
-    /// EXTCLK.
-    pub clock_pin: Peri<'static, PA7>,
+    /// Makes EXTCLK.
+    pub clock: pins::ClockSource,
     /// RESET, active low.
     pub reset: Peri<'static, PD2>,
     /// The control bus.
@@ -77,6 +103,9 @@ pub struct Board {
     pub sensor: SensorPort,
     /// For the link tasks.
     pub link: LinkPort,
+    /// For the task that takes frames over serial.
+    #[cfg(feature = "rig")]
+    pub serial: SerialPort,
     /// For the health task.
     pub watchdog: Peri<'static, IWDG>,
 }
@@ -100,8 +129,7 @@ impl Board {
         Self {
             camera: capture::Port::new(p.DCMI, p.DMA2_CH1, pins),
             sensor: SensorPort {
-                clock: p.TIM3,
-                clock_pin: p.PA7,
+                clock: pins::own!(p),
                 reset: p.PD2,
                 bus: SensorBus {
                     i2c: p.I2C2,
@@ -117,6 +145,14 @@ impl Board {
                 rx: p.PA3,
                 tx_dma: p.DMA1_CH6,
                 rx_dma: p.DMA1_CH5,
+            },
+            #[cfg(feature = "rig")]
+            serial: SerialPort {
+                uart: p.USART3,
+                tx: p.PD8,
+                rx: p.PD9,
+                tx_dma: p.DMA1_CH3,
+                rx_dma: p.DMA1_CH1,
             },
             watchdog: p.IWDG,
         }
