@@ -2,8 +2,7 @@
 //!
 //!     cargo bench -p fake-sensors --bench render
 
-use divan::Bencher;
-use divan::counter::ItemsCount;
+use criterion::{BenchmarkId, Criterion, Throughput};
 use fake_sensors::camera::{
     Exposure, FRAME_BYTES, HEIGHT, Moment, PanoramicCamera, PanoramicLens, Pose,
 };
@@ -20,10 +19,6 @@ const EXPOSURE: Exposure = Exposure {
     gain: 1.0,
 };
 
-fn main() {
-    divan::main();
-}
-
 /// The camera on the first leg of the routes, `time_s` into a flight that never ends.
 fn pose(time_s: f64) -> Pose {
     let way_m = (time_s * SPEED_M_S) % 5.0;
@@ -35,29 +30,43 @@ fn pose(time_s: f64) -> Pose {
 }
 
 /// From poses to the bytes of a frame; the rate is frames a second.
-#[divan::bench(args = WORLD_NAMES)]
-fn frame(bencher: Bencher<'_, '_>, name: &str) {
-    let Ok(world) = World::named(name, 1) else {
-        return;
-    };
-    let lens = PanoramicLens::default();
-    let mut camera = PanoramicCamera::new(world, &lens, 1);
-    let mut number = 0;
-    bencher.counter(ItemsCount::new(1_u32)).bench_local(|| {
-        let start_s = f64::from(number) * 0.039;
-        camera.begin_frame(number);
-        for row in 0..HEIGHT {
-            let time_s = start_s + READOUT_S * row as f64 / HEIGHT as f64;
-            let moment = Moment {
-                pose: pose(time_s),
-                time_s,
-            };
-            camera.light_row(row, &moment);
-        }
-        for row in 0..HEIGHT {
-            camera.read_row(row, EXPOSURE);
-        }
-        number += 1;
-        camera.frame()[FRAME_BYTES / 2]
-    });
+fn frame(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("frame");
+    group.throughput(Throughput::Elements(1));
+    for name in WORLD_NAMES {
+        let world = World::named(name, 1).expect("a world of the library");
+        let mut camera = PanoramicCamera::new(world, &PanoramicLens::default(), 1);
+        let mut number = 0;
+        group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+            bencher.iter(|| {
+                take(&mut camera, number);
+                number += 1;
+                camera.frame()[FRAME_BYTES / 2]
+            });
+        });
+    }
+    group.finish();
+}
+
+/// A frame, row by row.
+fn take(camera: &mut PanoramicCamera, number: u32) {
+    let start_s = f64::from(number) * 0.039;
+    camera.begin_frame(number);
+    for row in 0..HEIGHT {
+        let time_s = start_s + READOUT_S * row as f64 / HEIGHT as f64;
+        let moment = Moment {
+            pose: pose(time_s),
+            time_s,
+        };
+        camera.light_row(row, &moment);
+    }
+    for row in 0..HEIGHT {
+        camera.read_row(row, EXPOSURE);
+    }
+}
+
+fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    frame(&mut criterion);
+    criterion.final_summary();
 }

@@ -3,8 +3,9 @@
 use autopilot::ekf::{
     Ekf, Flow, ImuSample, Measurement, Parameters, Pose, Position, Range, YawError,
 };
-use divan::{Bencher, black_box};
+use criterion::{BatchSize, Criterion};
 use nalgebra::{UnitQuaternion, Vector3};
+use std::hint::black_box;
 
 const IMU: ImuSample = ImuSample {
     gyro_deg_s: Vector3::new(3.0, -2.0, 1.0),
@@ -41,15 +42,25 @@ fn enqueue(ekf: &mut Ekf, measurements: &[Measurement]) {
 }
 
 /// One pass with an IMU sample and these measurements; the filter it starts from is copied outside the clock.
-fn pass(bencher: Bencher<'_, '_>, start: &Ekf, now_ms: u64, measurements: &[Measurement]) {
-    bencher
-        .with_inputs(|| start.clone())
-        .bench_local_values(|mut ekf| {
-            enqueue(&mut ekf, &IMU.measurements());
-            enqueue(&mut ekf, black_box(measurements));
-            ekf.tick(black_box(now_ms), true);
-            ekf
-        });
+fn pass(
+    criterion: &mut Criterion,
+    name: &str,
+    start: &Ekf,
+    now_ms: u64,
+    measurements: &[Measurement],
+) {
+    criterion.bench_function(name, |bencher| {
+        bencher.iter_batched(
+            || start.clone(),
+            |mut ekf| {
+                enqueue(&mut ekf, &IMU.measurements());
+                enqueue(&mut ekf, black_box(measurements));
+                ekf.tick(black_box(now_ms), true);
+                ekf
+            },
+            BatchSize::SmallInput,
+        );
+    });
 }
 
 /// The filter one tick later, where no prediction is due.
@@ -59,28 +70,8 @@ fn between() -> Ekf {
     ekf
 }
 
-#[divan::bench]
-fn predicting(bencher: Bencher<'_, '_>) {
-    pass(bencher, &settled(), 1000, &[]);
-}
-
-#[divan::bench]
-fn not_predicting(bencher: Bencher<'_, '_>) {
-    pass(bencher, &between(), 1001, &[]);
-}
-
-#[divan::bench]
-fn with_flow(bencher: Bencher<'_, '_>) {
-    pass(bencher, &between(), 1001, &[FLOW]);
-}
-
-#[divan::bench]
-fn with_range(bencher: Bencher<'_, '_>) {
-    pass(bencher, &between(), 1001, &[RANGE]);
-}
-
-#[divan::bench]
-fn with_correction(bencher: Bencher<'_, '_>) {
+fn passes(criterion: &mut Criterion) {
+    let (settled, between) = (settled(), between());
     let fix = Measurement::Position(Position {
         position_m: Vector3::new(0.2, -0.1, 0.5),
         sd_m: 0.001,
@@ -89,26 +80,30 @@ fn with_correction(bencher: Bencher<'_, '_>) {
         error_rad: 0.1,
         sd_rad: 0.002,
     });
-    pass(bencher, &between(), 1001, &[fix, turn]);
-}
-
-#[divan::bench]
-fn with_pose(bencher: Bencher<'_, '_>) {
     let pose = Measurement::Pose(Pose {
         position_m: Vector3::new(0.2, -0.1, 0.5),
         attitude: UnitQuaternion::from_euler_angles(0.01, -0.02, 0.05),
         sd_position_m: 0.01,
         sd_attitude_rad: 4.5e-3,
     });
-    pass(bencher, &between(), 1001, &[pose]);
-}
-
-/// A tick of all that can fall together.
-#[divan::bench]
-fn predicting_with_flow_and_range(bencher: Bencher<'_, '_>) {
-    pass(bencher, &settled(), 1000, &[FLOW, RANGE]);
+    pass(criterion, "predicting", &settled, 1000, &[]);
+    pass(criterion, "not predicting", &between, 1001, &[]);
+    pass(criterion, "with flow", &between, 1001, &[FLOW]);
+    pass(criterion, "with range", &between, 1001, &[RANGE]);
+    pass(criterion, "with a correction", &between, 1001, &[fix, turn]);
+    pass(criterion, "with a pose", &between, 1001, &[pose]);
+    // All that can fall together in a tick.
+    pass(
+        criterion,
+        "predicting, flow and range",
+        &settled,
+        1000,
+        &[FLOW, RANGE],
+    );
 }
 
 fn main() {
-    divan::main();
+    let mut criterion = Criterion::default().configure_from_args();
+    passes(&mut criterion);
+    criterion.final_summary();
 }
