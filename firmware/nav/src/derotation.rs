@@ -76,16 +76,16 @@ impl Derotation {
             Tilt::default()
         };
         let to_body = ToBody::new(tilt);
-        let mut luma = [0.0; BEARINGS];
-        for (n, value) in luma.iter_mut().enumerate() {
+        let mut sums = [0; BEARINGS];
+        for (n, sum) in sums.iter_mut().enumerate() {
             let (sin, cos) = libm::sincosf(n as f32 * (TAU / BEARINGS as f32) - heading);
             let column = self.elevations.iter().map(|(up, level)| {
                 let direction = [level * cos, level * sin, *up];
                 u16::from(self.look(frame, to_body.turn(direction)))
             });
-            *value = f32::from(column.sum::<u16>()) * (1.0 / RADII as f32);
+            *sum = column.sum();
         }
-        Horizon::new(luma, 0.0)
+        Horizon::from_sums(sums, 0.0)
     }
 
     /// The luma in a direction of the body (x forward, y left, z up), or that of the band's edge.

@@ -141,14 +141,16 @@ pub fn home(
     let mut displacement = Vector2::zeros();
     let mut rotation = coarse;
     let mut difference = None;
-    for _ in 0..parameters.iterations.max(1) {
+    for left in (0..parameters.iterations.max(1)).rev() {
         let image = ImageDifference::between(&moved, &stored, &parameters.weights);
         let step = image.minimum()?;
         difference.get_or_insert(image.constant());
         displacement += step.xy();
         rotation -= step.z;
-        moved = difference::moved(&moved, step.xy());
-        rotate(&mut stored, step.z);
+        if left > 0 {
+            moved = difference::moved(&moved, step.xy());
+            rotate(&mut stored, step.z);
+        }
     }
     let vector = HomingVector {
         displacement: displacement.cap_magnitude(parameters.displacement_bound),

@@ -24,12 +24,14 @@
 #![no_std]
 
 pub mod calibration;
+mod cosine;
 pub mod derotation;
 pub mod exposure;
 pub mod homing;
 pub mod horizon;
 pub mod methods;
 pub mod navigator;
+mod pair;
 pub mod panorama;
 pub mod pose;
 pub mod route;

@@ -10,8 +10,11 @@ use crate::exposure::LumaHistogram;
 use crate::horizon::{BEARINGS, Horizon};
 
 mod layout;
+mod samples;
 
 pub use layout::FrameLayout;
+
+use samples::SampleTable;
 
 /// Samples along the radius.
 pub const RADII: usize = 16;
@@ -28,7 +31,7 @@ pub const BAND_ROWS: usize = 6;
 pub struct PanoramaMap {
     /// By body bearing 2πn / 128, then by elevation: from the highest row of the horizon band to the
     /// lowest of all, and on from the highest of all.
-    luma_index: [[u16; RADII]; BEARINGS],
+    samples: SampleTable,
     /// The highest row of the horizon band, counted from the highest of all.
     band_start: usize,
 }
@@ -43,24 +46,23 @@ impl PanoramaMap {
     /// too large for the table.
     pub fn new(lens: &LensCalibration, layout: &FrameLayout) -> Result<Self, CalibrationError> {
         lens.check(layout)?;
-        let mut luma_index = [[0; RADII]; BEARINGS];
         let band_start = band_start(lens);
-        for (bearing, column) in luma_index.iter_mut().enumerate() {
+        let directions: [_; BEARINGS] = core::array::from_fn(|bearing| {
             let turn = bearing as f32 * (TAU / BEARINGS as f32);
-            let angle = match lens.direction {
+            libm::sincosf(match lens.direction {
                 BearingDirection::Clockwise => lens.zero_bearing_rad + turn,
                 BearingDirection::CounterClockwise => lens.zero_bearing_rad - turn,
-            };
-            let (sin, cos) = libm::sincosf(angle);
-            for (row, index) in column.iter_mut().enumerate() {
-                let radius = radius_of(lens, (row + band_start) % RADII);
-                let x = lens.centre_px.0 + radius * cos;
-                let y = lens.centre_px.1 + radius * sin;
-                *index = layout.luma_index(x, y);
-            }
-        }
+            })
+        });
+        let samples = SampleTable::new(layout.bytes(), |bearing, sample| {
+            let (sin, cos) = directions[bearing];
+            let radius = radius_of(lens, (sample + band_start) % RADII);
+            let x = lens.centre_px.0 + radius * cos;
+            let y = lens.centre_px.1 + radius * sin;
+            layout.luma_index(x, y)
+        });
         Ok(Self {
-            luma_index,
+            samples: samples.ok_or(CalibrationError::FrameTooLarge)?,
             band_start,
         })
     }
@@ -68,7 +70,7 @@ impl PanoramaMap {
     /// The mean luma of each bearing, turned by the heading (radians, counter-clockwise from north)
     /// so that bearing zero is north.
     ///
-    /// `frame` has the layout that the map was made for; bytes that it lacks count as black.
+    /// `frame` has the layout that the map was made for; one that is shorter counts as black.
     ///
     /// The turn is a whole number of columns; the horizon carries the rest of it, and its spectrum
     /// is turned by that exactly.
@@ -82,31 +84,18 @@ impl PanoramaMap {
         let columns = heading * (BEARINGS as f32 / TAU);
         let whole = libm::roundf(columns);
         let residual = (columns - whole) * (TAU / BEARINGS as f32);
-        let shift = (whole as i32).rem_euclid(BEARINGS as i32) as usize;
+        let first = (whole as i32).wrapping_neg().rem_euclid(BEARINGS as i32) as usize;
 
-        let mut luma = [0.0; BEARINGS];
-        let mut in_band = 0;
-        for (value, column) in luma[shift..].iter_mut().zip(&self.luma_index) {
-            *value = mean(frame, column, &mut in_band);
-        }
-        let wrapped = &self.luma_index[BEARINGS - shift..];
-        for (value, column) in luma[..shift].iter_mut().zip(wrapped) {
-            *value = mean(frame, column, &mut in_band);
-        }
+        let mut sums = [0; BEARINGS];
+        let in_band = self.samples.sum_columns(frame, first, &mut sums);
         let samples = (BAND_ROWS * BEARINGS) as f32;
-        (Horizon::new(luma, residual), in_band as f32 / samples)
+        (Horizon::from_sums(sums, residual), in_band as f32 / samples)
     }
 
     /// How bright the samples of the horizon band are.
     pub fn band(&self, frame: &[u8]) -> LumaHistogram {
         let mut histogram = LumaHistogram::new();
-        for index in self
-            .luma_index
-            .iter()
-            .flat_map(|column| &column[..BAND_ROWS])
-        {
-            histogram.add(luma_at(frame, *index));
-        }
+        self.samples.look_at_band(frame, |luma| histogram.add(luma));
         histogram
     }
 
@@ -115,11 +104,17 @@ impl PanoramaMap {
     pub fn unwrap(&self, frame: &[u8]) -> [[u8; BEARINGS]; RADII] {
         let mut image = [[0; BEARINGS]; RADII];
         for (row, pixels) in image.iter_mut().enumerate() {
-            for (pixel, column) in pixels.iter_mut().zip(&self.luma_index) {
-                *pixel = luma_at(frame, column[(row + RADII - self.band_start) % RADII]);
+            let sample = (row + RADII - self.band_start) % RADII;
+            for (bearing, pixel) in pixels.iter_mut().enumerate() {
+                *pixel = self.luma(frame, bearing, sample);
             }
         }
         image
+    }
+
+    fn luma(&self, frame: &[u8], bearing: usize, sample: usize) -> u8 {
+        let index = self.samples.index(bearing, sample);
+        frame.get(index).copied().unwrap_or(0)
     }
 }
 
@@ -145,25 +140,6 @@ fn band_start(lens: &LensCalibration) -> usize {
     let start = libm::roundf(below_the_top / span * RADII as f32) - (BAND_ROWS / 2) as f32;
     // The cast saturates at 0.
     (start as usize).min(RADII - BAND_ROWS)
-}
-
-fn luma_at(frame: &[u8], index: u16) -> u8 {
-    // Always inside a frame of the map's layout. The zero stands for the bytes that a shorter one
-    // lacks, in place of a panic.
-    frame.get(usize::from(index)).copied().unwrap_or(0)
-}
-
-/// The mean of a column; the sum of its rows in the band is added to `in_band`.
-fn mean(frame: &[u8], column: &[u16; RADII], in_band: &mut u32) -> f32 {
-    let sum = |rows: &[u16]| -> u16 {
-        rows.iter()
-            .map(|&index| u16::from(luma_at(frame, index)))
-            .sum()
-    };
-    let (band, others) = column.split_at(BAND_ROWS);
-    let band = sum(band);
-    *in_band += u32::from(band);
-    f32::from(band + sum(others)) * (1.0 / RADII as f32)
 }
 
 #[cfg(test)]

@@ -1,9 +1,12 @@
 //! The low frequencies of the horizon.
 
-use microfft::real::rfft_128;
+use core::f32::consts::FRAC_PI_4;
+
 use nalgebra::Complex;
 
-use crate::horizon::{BEARINGS, Horizon};
+use crate::horizon::{BEARING_STEP_RAD, BEARINGS, Horizon, SUMMED};
+
+mod folded;
 
 /// Frequencies that a snapshot stores: k = 1..=8 (paper, Fig. 8).
 pub const STORED_FREQUENCIES: usize = 8;
@@ -23,15 +26,19 @@ pub struct Spectrum {
 
 impl Spectrum {
     /// The spectrum of a horizon, turned by what the horizon left of the turn to north.
+    #[inline(never)]
     pub fn of(horizon: &Horizon) -> Self {
-        let mut samples = *horizon.luma();
-        let bins = rfft_128(&mut samples);
-        let mut coefficients = [Complex::new(0.0, 0.0); VIEW_FREQUENCIES];
-        // Bin 0 holds frequency zero and, packed as its imaginary part, frequency 64.
-        for (coefficient, bin) in coefficients.iter_mut().zip(&bins[1..]) {
-            *coefficient = bin * (2.0 / BEARINGS as f32);
-        }
-        Self { coefficients }.rotated(-horizon.residual_rad())
+        let sums = folded::low_frequencies(horizon.sums());
+        let mut coefficients = sums.map(|sum| {
+            let parts = Complex::new(sum.re as f32, sum.im as f32);
+            parts * (folded::SUM_SCALE * 2.0 / (BEARINGS * SUMMED) as f32)
+        });
+        // The sums look from the middle between two bearings.
+        rotate(
+            &mut coefficients,
+            0.5 * BEARING_STEP_RAD - horizon.residual_rad(),
+        );
+        Self { coefficients }
     }
 
     /// A spectrum from c_1..c_9.
@@ -69,12 +76,29 @@ impl Spectrum {
 /// Turns the viewer of c_1, c_2, ... counter-clockwise by `angle`: c_k e^{ik angle}.
 pub fn rotate(coefficients: &mut [Complex<f32>], angle: f32) {
     // One sine and one cosine; the powers follow by multiplication.
-    let step = Complex::new(libm::cosf(angle), libm::sinf(angle));
+    let step = unit(angle);
     let mut turn = step;
     for coefficient in coefficients {
         *coefficient *= turn;
         turn *= step;
     }
+}
+
+/// e^{i angle}. Up to an eighth of a turn, where nearly all of a flight's are, by Taylor's series: the
+/// first terms left out are below 3e-8, and `libm` would compute in double precision, which the
+/// Cortex-M4F has not.
+pub(crate) fn unit(angle: f32) -> Complex<f32> {
+    // Written so that NaN goes to `libm`.
+    let is_small = angle.abs() <= FRAC_PI_4;
+    if !is_small {
+        let (sin, cos) = libm::sincosf(angle);
+        return Complex::new(cos, sin);
+    }
+    let y = angle * angle;
+    let cos = 1.0 - y * (1.0 / 2.0 - y * (1.0 / 24.0 - y * (1.0 / 720.0 - y * (1.0 / 40_320.0))));
+    let sin =
+        1.0 - y * (1.0 / 6.0 - y * (1.0 / 120.0 - y * (1.0 / 5_040.0 - y * (1.0 / 362_880.0))));
+    Complex::new(cos, angle * sin)
 }
 
 #[cfg(test)]

@@ -95,7 +95,7 @@ impl Observer {
             moment: *moment,
             exposure,
             panorama: self.map.unwrap(&*frame),
-            horizon: *horizon.luma(),
+            horizon: horizon.luma(),
             amplitudes: spectrum.coefficients().map(|c| libm::hypotf(c.re, c.im)),
             snapshot: Snapshot::quantise(&spectrum),
             frame,

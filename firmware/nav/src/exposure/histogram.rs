@@ -59,9 +59,10 @@ impl LumaHistogram {
             return None;
         }
         let full = FULL - scale.black;
-        let visible: f32 = lights(below_white, scale.black)
-            .map(|(count, light)| count * light)
-            .sum();
+        // In integers as far as it goes: exact, and two cycles for each luma.
+        let luma = |(luma, &count): (usize, &u16)| luma as u32 * u32::from(count);
+        let luma: u32 = below_white.iter().enumerate().map(luma).sum();
+        let visible = luma as f32 - scale.black * (total - clipped) as f32;
         let wanted = (scale.wanted - scale.black) * total as f32 - clipped as f32 * full;
         let factor = if visible < wanted {
             upwards(below_white, scale.black, wanted, visible)

@@ -2,20 +2,37 @@
 //!
 //! The paper replaced Stürzl & Mallot's phase-based alignment by this, because a symmetric place or a
 //! weak low frequency misleads the former.
-
-use nalgebra::Complex;
+//!
+//! How well the views fit at a rotation by s steps of δ = 2π/128 is a short Fourier series,
+//!
+//! ```text
+//! score(s) = Σ w_k Re(c_k conj(t_k) e^{iksδ}) = Σ p_k cos ksδ - q_k sin ksδ,   p_k + iq_k = w_k c_k conj(t_k)
+//! ```
+//!
+//! its maximum the least squared difference, which differs from it by a constant. The cosine is the same
+//! at s and -s, and at 64 - s but for the sign of odd k; the sine takes the other sign at -s, and at
+//! 64 - s for even k. One table of s = 0..=32 and four sums therefore serve four rotations.
 
 use super::Weights;
-use crate::horizon::{BEARING_STEP_RAD, BEARINGS};
+use crate::cosine::cosine;
+use crate::horizon::BEARINGS;
+use crate::pair::Pair;
 use crate::spectrum::{STORED_FREQUENCIES, Spectrum, StoredCoefficients};
 
-/// Half of all rotations.
-const HALF_TURN: u8 = (BEARINGS / 2) as u8;
+/// Half and a quarter of all rotations.
+const HALF_TURN: i16 = (BEARINGS / 2) as i16;
+const QUARTER_TURN: usize = BEARINGS / 4;
+
+/// What the numbers of a series add up to, in integers: each of them fits into 16 bits, and their sum
+/// times a cosine of 2^13 parts into 32.
+const SERIES_SUM: f32 = 32_767.0;
 
 /// The best of all 128 rotations: how far the stored view's viewer is turned counter-clockwise
 /// against the current one, in steps of 2.8 degrees, 0..=127.
+#[inline(never)]
 pub fn align128(current: &Spectrum, stored: &StoredCoefficients, weights: &Weights) -> u8 {
-    best(current, stored, weights, 0, BEARINGS as i16 - 1) as u8
+    let best = Series::new(current, stored, weights).best_within(HALF_TURN);
+    best.rem_euclid(BEARINGS as i16) as u8
 }
 
 /// The best rotation within ±`bound` steps (at most half a turn).
@@ -26,44 +43,113 @@ pub fn align_within(
     weights: &Weights,
     bound: u8,
 ) -> i8 {
-    let bound = i16::from(bound.min(HALF_TURN - 1));
-    best(current, stored, weights, -bound, bound) as i8
+    let bound = i16::from(bound).min(HALF_TURN - 1);
+    Series::new(current, stored, weights).best_within(bound) as i8
 }
 
-/// argmax over s in first..=last of Σ w_k Re(c_k conj(t_k) e^{iksδ}), δ = 2π / 128; equal to the
-/// argmin of the squared difference, which differs by a constant.
-fn best(
-    current: &Spectrum,
-    stored: &StoredCoefficients,
-    weights: &Weights,
-    first: i16,
-    last: i16,
-) -> i16 {
-    let start = unit(f32::from(first) * BEARING_STEP_RAD);
-    let step = unit(BEARING_STEP_RAD);
-    let mut product = [Complex::new(0.0, 0.0); STORED_FREQUENCIES];
-    let mut steps = [step; STORED_FREQUENCIES];
-    let (mut start_power, mut step_power) = (start, step);
-    for k in 0..STORED_FREQUENCIES {
-        product[k] = current.coefficients()[k] * stored[k].conj() * weights[k] * start_power;
-        steps[k] = step_power;
-        start_power *= start;
-        step_power *= step;
-    }
-
-    let mut best = (first, f32::NEG_INFINITY);
-    for rotation in first..=last {
-        let score = product.iter().map(|term| term.re).sum();
-        if score > best.1 {
-            best = (rotation, score);
-        }
-        for (term, turn) in product.iter_mut().zip(&steps) {
-            *term *= turn;
-        }
-    }
-    best.0
+/// Numbers that belong to k = 1..=8, odd and even k apart.
+#[derive(Clone, Copy)]
+struct ByFrequency {
+    odd: [Pair; 2],
+    even: [Pair; 2],
 }
 
-fn unit(angle: f32) -> Complex<f32> {
-    Complex::new(libm::cosf(angle), libm::sinf(angle))
+impl ByFrequency {
+    const fn new(numbers: [i16; STORED_FREQUENCIES]) -> Self {
+        let [n1, n2, n3, n4, n5, n6, n7, n8] = numbers;
+        Self {
+            odd: [Pair::new(n1, n3), Pair::new(n5, n7)],
+            even: [Pair::new(n2, n4), Pair::new(n6, n8)],
+        }
+    }
+
+    /// Sums of products over odd k and over even k.
+    #[inline(always)]
+    fn dots(&self, other: &Self) -> [i32; 2] {
+        let dot = |a: &[Pair; 2], b: &[Pair; 2]| a[1].dot(b[1], a[0].dot(b[0], 0));
+        [dot(&self.odd, &other.odd), dot(&self.even, &other.even)]
+    }
+}
+
+/// cos ksδ and sin ksδ.
+struct Row {
+    cos: ByFrequency,
+    sin: ByFrequency,
+}
+
+static ROWS: [Row; QUARTER_TURN + 1] = {
+    const ROW: Row = row(0);
+    let mut rows = [ROW; QUARTER_TURN + 1];
+    let mut steps = 1;
+    while steps < rows.len() {
+        rows[steps] = row(steps);
+        steps += 1;
+    }
+    rows
+};
+
+const fn row(steps: usize) -> Row {
+    let (mut cos, mut sin) = ([0; STORED_FREQUENCIES], [0; STORED_FREQUENCIES]);
+    let mut k = 1;
+    while k <= STORED_FREQUENCIES {
+        // In steps of half a bearing; a quarter turn is 64 of them.
+        cos[k - 1] = cosine(2 * k * steps);
+        sin[k - 1] = cosine(2 * k * steps + 192);
+        k += 1;
+    }
+    Row {
+        cos: ByFrequency::new(cos),
+        sin: ByFrequency::new(sin),
+    }
+}
+
+/// The series whose maximum is sought, scaled to integers.
+struct Series {
+    cos: ByFrequency,
+    sin: ByFrequency,
+}
+
+impl Series {
+    fn new(current: &Spectrum, stored: &StoredCoefficients, weights: &Weights) -> Self {
+        let (mut p, mut q) = ([0.0; STORED_FREQUENCIES], [0.0; STORED_FREQUENCIES]);
+        let mut sum = 0.0;
+        for k in 0..STORED_FREQUENCIES {
+            let product = current.coefficients()[k] * stored[k].conj() * weights[k];
+            (p[k], q[k]) = (product.re, product.im);
+            sum += product.re.abs() + product.im.abs();
+        }
+        // Where nothing is to be seen, or nothing finite, all becomes zero: the cast's way with NaN.
+        let scale = SERIES_SUM / sum;
+        let scaled = |numbers: [f32; STORED_FREQUENCIES]| {
+            ByFrequency::new(numbers.map(|number| (number * scale) as i16))
+        };
+        Self {
+            cos: scaled(p),
+            sin: scaled(q),
+        }
+    }
+
+    /// The best rotation within ±`bound` steps; the smallest turn where several are.
+    fn best_within(&self, bound: i16) -> i16 {
+        let (mut best, mut best_score) = (0, i32::MIN);
+        let mut consider = |rotation: i16, score: i32| {
+            if score > best_score && rotation.abs() <= bound {
+                (best, best_score) = (rotation, score);
+            }
+        };
+        let goes_round = bound >= HALF_TURN - QUARTER_TURN as i16;
+        for (steps, row) in (0..=bound).zip(&ROWS) {
+            let [odd_cos, even_cos] = self.cos.dots(&row.cos);
+            let [odd_sin, even_sin] = self.sin.dots(&row.sin);
+            let (cos, sin) = (even_cos + odd_cos, even_sin + odd_sin);
+            consider(steps, cos - sin);
+            consider(-steps, cos + sin);
+            if goes_round {
+                let (cos, sin) = (even_cos - odd_cos, odd_sin - even_sin);
+                consider(HALF_TURN - steps, cos - sin);
+                consider(steps - HALF_TURN, cos + sin);
+            }
+        }
+        best
+    }
 }

@@ -135,8 +135,9 @@ fn at_eight_frequencies_of_eight_bits_it_is_the_homing_that_flies() {
     use crate::{Horizon, Snapshot, Spectrum};
     for seed in SEEDS {
         let place = Place::new(seed);
-        let [here, goal] = [HERE, [0.1, 0.05]].map(|h| place.view(h, 0.0));
-        let [seen, stored] = [here, goal].map(|view| Spectrum::of(&Horizon::new(view, 0.0)));
+        let horizons = [HERE, [0.1, 0.05]].map(|h| Horizon::new(place.view(h, 0.0), 0.0));
+        let [seen, stored] = horizons.each_ref().map(Spectrum::of);
+        let [here, goal] = horizons.map(|horizon| horizon.luma());
         let parameters = HomingParameters {
             rotation_bound: 0,
             ..HomingParameters::DEFAULT
