@@ -47,7 +47,7 @@ fn frame(camera: &mut PanoramicCamera, tilt: Tilt) -> Frame {
 fn difference(a: &Horizon, b: &Horizon) -> f32 {
     let mean = |horizon: &Horizon| horizon.luma().iter().sum::<f32>() / BEARINGS as f32;
     let rest = mean(a) - mean(b);
-    let squares = a.luma().iter().zip(b.luma()).map(|(a, b)| {
+    let squares = a.luma().into_iter().zip(b.luma()).map(|(a, b)| {
         let off = a - b - rest;
         off * off
     });
