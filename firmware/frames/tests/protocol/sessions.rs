@@ -31,6 +31,23 @@ fn a_frame_with_a_piece_missing_is_torn_once_whichever_piece_it_is() {
     }
 }
 
+/// Frames that do not fit the steps have the same offsets: the number alone tells their pieces apart.
+#[test]
+fn the_head_of_one_frame_and_the_tail_of_the_next_are_two_torn_frames() {
+    let pieces = |number: u8| -> Vec<Vec<u8>> {
+        let frame = vec![number; SHAPE.bytes()];
+        let pieces = Pieces::of(u32::from(number), &frame, &SHAPE);
+        pieces.map(|piece| piece.to_vec()).collect()
+    };
+    let stream = [pieces(1)[..9].concat(), pieces(2)[9..].concat()].concat();
+    let mut board = Board::new();
+    board.hear(&stream, &[usize::MAX]);
+    assert_eq!(
+        board.events,
+        [dropped(1, Verdict::Torn), dropped(2, Verdict::Torn)]
+    );
+}
+
 #[test]
 fn a_frame_without_its_last_piece_is_torn_by_the_next_or_by_silence() {
     let mut sent = pieces(1);
@@ -67,6 +84,16 @@ fn a_broken_piece_is_counted_and_tears_its_frame() {
         ..Counts::default()
     };
     assert_eq!(board.receiver().counts(), counts);
+}
+
+#[test]
+fn a_record_that_was_cut_is_told_from_one_whose_bytes_changed() {
+    let asked = Request::Begin { fresh_ms: 0x7f7f }.encode();
+    let mut cut = asked.to_vec();
+    cut.remove(asked.len() - 3);
+    let mut board = Board::new();
+    board.hear(&cut, &[usize::MAX]);
+    assert_eq!(board.events, [Event::Corrupt(Damage::Broken)]);
 }
 
 #[test]
