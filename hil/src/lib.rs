@@ -20,6 +20,7 @@ pub mod flight;
 pub mod folder;
 pub mod gdb;
 pub mod homing_check;
+pub mod homing_cycles;
 pub mod image;
 pub mod import_cf;
 pub mod link_check;

@@ -18,6 +18,7 @@ mod coefficients;
 mod fourier;
 mod grey;
 mod mfdid;
+pub mod presets;
 mod quadratic;
 mod search;
 mod warp_search;

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use nav::methods::{
     Alignment, CoefficientCode, FourierParameters, MOST_BYTES, MfdidParameters, Resolution,
     SearchParameters, Slope, Unknowns, WarpParameters,
+    presets::{self, ROTATION_STEP},
 };
 use serde::{Serialize, Serializer};
 
@@ -189,9 +190,6 @@ fn mfdid(bytes: u8) -> Vec<Settings> {
     all
 }
 
-/// Steps of the warp search's rotations.
-const WARP_ROTATION_STEP: u8 = 3;
-
 fn warp(bytes: u8, heading_deg: f32) -> Vec<Settings> {
     let codes: Vec<CoefficientCode> = [4, 5, 6, 8]
         .into_iter()
@@ -211,7 +209,7 @@ fn warp(bytes: u8, heading_deg: f32) -> Vec<Settings> {
                         power,
                         farthest,
                         rotations: rotations(heading_deg),
-                        rotation_step: WARP_ROTATION_STEP,
+                        rotation_step: ROTATION_STEP,
                         polish,
                     }));
                 }
@@ -223,23 +221,12 @@ fn warp(bytes: u8, heading_deg: f32) -> Vec<Settings> {
 }
 
 fn rotations(heading_deg: f32) -> u8 {
-    steps(heading_deg, BEARING_DEG * f32::from(WARP_ROTATION_STEP)).min(22)
+    steps(heading_deg, BEARING_DEG * f32::from(ROTATION_STEP)).min(22)
 }
 
 /// The settings that ship, by size.
 pub fn shipped(bytes: u8, heading_deg: f32) -> WarpParameters {
-    WarpParameters {
-        code: CoefficientCode {
-            frequencies: bytes.min(16),
-            bits: 4,
-            range: 0.5,
-        },
-        power: 1.0,
-        farthest: 0.95,
-        rotations: rotations(heading_deg),
-        rotation_step: WARP_ROTATION_STEP,
-        polish: true,
-    }
+    presets::default(bytes, rotations(heading_deg))
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ mod exposure;
 mod film;
 mod fly;
 mod homing_check;
+mod homing_cycles;
 mod import_cf;
 mod link_check;
 mod live;
@@ -75,6 +76,8 @@ enum Verb {
     Build(build::Arguments),
     /// Holds the homing against a file of solved problems
     HomingCheck(homing_check::Arguments),
+    /// Measures what each homing method costs on the emulated board
+    HomingCycles(homing_cycles::Arguments),
     /// Draws the report of a real flight from the logs of cfclient
     ImportCf(import_cf::Arguments),
     /// Holds the link's codec against records of another implementation's
@@ -114,6 +117,7 @@ pub fn main() -> ExitCode {
         Verb::CalibrateTiming(arguments) => calibrate_timing::run(&arguments, &console),
         Verb::Build(arguments) => build::run(&arguments, &console),
         Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),
+        Verb::HomingCycles(arguments) => homing_cycles::run(&arguments, &console),
         Verb::ImportCf(arguments) => import_cf::run(&arguments, &console),
         Verb::LinkCheck(arguments) => link_check::run(&arguments, &console),
         Verb::Profile(arguments) => profile::run(&arguments, &console),

@@ -206,7 +206,7 @@ fn a_warp_in_coefficients_is_the_exact_warp_of_the_view() {
     let here = Harmonics::of(&place.view(HERE, 0.0));
     for (index, distance) in search.distances().into_iter().enumerate() {
         let exact = Harmonics::of(&place.view([f64::from(distance), 0.0], 0.0));
-        let warped = search.warped(&here, index);
+        let warped = search.warped(&here, index, 8);
         for (k, (warped, exact)) in warped.iter().zip(&exact.0).enumerate().take(8) {
             // The 128 samples of the exact view fold its highest frequencies back; the warp has none
             // beyond 24.
@@ -230,6 +230,35 @@ fn the_warp_search_finds_its_way_from_half_the_distance() {
             );
             let error = way.displacement - Vector2::new(goal[0] as f32, goal[1] as f32);
             assert!(error.norm() < 0.03, "seed {seed}, {goal:?}: {way:?}");
+        }
+    }
+}
+
+#[test]
+fn a_search_that_adopts_parameters_is_one_that_was_made_with_them() {
+    let place = Place::new(7);
+    let [here, goal] = [HERE, [0.3, 0.1]].map(|h| place.view(h, 0.0));
+    let parameters = WarpParameters {
+        farthest: 0.5,
+        power: 1.0,
+        ..presets::default(10, 0)
+    };
+    let mut adopting = warps(4, false);
+    adopting.adopt(parameters);
+    let made = WarpSearch::new(parameters);
+    assert_eq!(way(&adopting, &here, &goal), way(&made, &here, &goal));
+}
+
+#[test]
+fn a_preset_takes_no_more_bytes_than_it_is_for() {
+    for bytes in [4, 6, 8, 10, 12, 16, 20, 24, 28, 32] {
+        let default = WarpSearch::new(presets::default(bytes, 0)).bytes();
+        let fourier = Fourier::new(presets::fourier(bytes)).bytes();
+        let mfdid = Mfdid::new(presets::mfdid(bytes)).bytes();
+        let search = Search::new(presets::search(bytes, Resolution::Full)).bytes();
+        for taken in [default, fourier, mfdid, search] {
+            assert!(taken <= usize::from(bytes), "{taken} of {bytes}");
+            assert!(taken + 2 > usize::from(bytes), "{taken} of {bytes}");
         }
     }
 }

@@ -27,10 +27,8 @@ use crate::spectrum::rotate;
 pub const DISTANCES: usize = 8;
 /// Frequencies that are compared at most.
 const MOST_COMPARED: usize = 16;
-/// Of them, and the one more that the last step leans on.
-const OUT: usize = MOST_COMPARED + 1;
 /// Frequencies of the current view that are warped.
-const IN: usize = 24;
+const IN: usize = 20;
 /// Directions tried: every 10 degrees.
 const DIRECTIONS: u8 = 36;
 /// Samples of the half circle under the integrals.
@@ -39,7 +37,13 @@ const SAMPLES: usize = 128;
 const POLISH_BOUND: f32 = 0.15;
 
 /// A matrix by column: what each frequency of the current view adds to all of the moved one.
-type Columns = [[f32; OUT]; IN];
+type Columns = [[f32; MOST_COMPARED]; IN];
+
+/// Sums that are carried at once while a view is warped: as many as registers hold.
+const BLOCK: usize = 8;
+
+/// The lowest coefficients of a moved view.
+type Moved = [Complex<f32>; MOST_COMPARED];
 
 /// What can be chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,21 +77,35 @@ pub struct WarpSearch {
 impl WarpSearch {
     /// A method of these parameters; its tables are computed here.
     pub fn new(parameters: WarpParameters) -> Self {
-        let farthest = parameters.farthest.clamp(0.0, 0.99);
         let mut search = Self {
             parameters,
             weights: quadratic::power_law(parameters.power),
-            distances: core::array::from_fn(|index| {
-                farthest * (index + 1) as f32 / DISTANCES as f32
-            }),
-            even: [[[0.0; OUT]; IN]; DISTANCES],
-            odd: [[[0.0; OUT]; IN]; DISTANCES],
+            distances: [0.0; DISTANCES],
+            even: [[[0.0; MOST_COMPARED]; IN]; DISTANCES],
+            odd: [[[0.0; MOST_COMPARED]; IN]; DISTANCES],
         };
-        for index in 0..DISTANCES {
-            let distance = search.distances[index];
-            fill(&mut search.even[index], &mut search.odd[index], distance);
-        }
+        search.fill();
         search
+    }
+
+    /// Takes other parameters. The tables are computed anew only for another farthest move: on the
+    /// board, 26 KiB had better stay where they are.
+    pub fn adopt(&mut self, parameters: WarpParameters) {
+        let same_tables = parameters.farthest == self.parameters.farthest;
+        self.weights = quadratic::power_law(parameters.power);
+        self.parameters = parameters;
+        if !same_tables {
+            self.fill();
+        }
+    }
+
+    fn fill(&mut self) {
+        let farthest = self.parameters.farthest.clamp(0.0, 0.99);
+        let tables = self.even.iter_mut().zip(&mut self.odd);
+        for (index, (distance, (even, odd))) in self.distances.iter_mut().zip(tables).enumerate() {
+            *distance = farthest * (index + 1) as f32 / DISTANCES as f32;
+            fill(even, odd, *distance);
+        }
     }
 
     /// The moves that are tried, in units of the surroundings' distance.
@@ -99,30 +117,22 @@ impl WarpSearch {
         self.parameters.code.kept().min(MOST_COMPARED)
     }
 
-    /// The view after a move straight ahead.
-    pub(super) fn warped(&self, view: &Harmonics, distance: usize) -> [Complex<f32>; OUT] {
-        let [mut re, mut im] = [[0.0_f32; OUT]; 2];
-        for (column, c) in self.even[distance].iter().zip(&view.0) {
-            for (sum, factor) in re.iter_mut().zip(column) {
-                *sum += factor * c.re;
+    /// The view after a move straight ahead: `count` of its coefficients at least, the rest zero.
+    pub(super) fn warped(&self, view: &Harmonics, distance: usize, count: usize) -> Moved {
+        let mut moved = [Complex::new(0.0, 0.0); MOST_COMPARED];
+        let blocks = count.div_ceil(BLOCK);
+        for (block, moved) in moved.chunks_exact_mut(BLOCK).take(blocks).enumerate() {
+            let re = product(&self.even[distance], block, view, |c| c.re);
+            let im = product(&self.odd[distance], block, view, |c| c.im);
+            for (c, (re, im)) in moved.iter_mut().zip(re.into_iter().zip(im)) {
+                *c = Complex::new(re, im);
             }
         }
-        for (column, c) in self.odd[distance].iter().zip(&view.0) {
-            for (sum, factor) in im.iter_mut().zip(column) {
-                *sum += factor * c.im;
-            }
-        }
-        core::array::from_fn(|index| Complex::new(re[index], im[index]))
+        moved
     }
 
     /// Tries the rotations of one moved view.
-    fn compare(
-        &self,
-        moved: &[Complex<f32>; OUT],
-        stored: &Harmonics,
-        best: &mut Best,
-        at: [u8; 2],
-    ) {
+    fn compare(&self, moved: &Moved, stored: &Harmonics, best: &mut Best, at: [u8; 2]) {
         let compared = self.compared();
         let mut power = 0.0;
         let mut product = [Complex::new(0.0, 0.0); MOST_COMPARED];
@@ -145,6 +155,24 @@ impl WarpSearch {
             }
         }
     }
+}
+
+/// A block of a matrix times one part of a view's coefficients.
+fn product(
+    columns: &Columns,
+    block: usize,
+    view: &Harmonics,
+    part: impl Fn(&Complex<f32>) -> f32,
+) -> [f32; BLOCK] {
+    let mut sums = [0.0; BLOCK];
+    for (column, c) in columns.iter().zip(&view.0) {
+        let part = part(c);
+        let factors = &column[block * BLOCK..(block + 1) * BLOCK];
+        for (sum, factor) in sums.iter_mut().zip(factors) {
+            *sum += factor * part;
+        }
+    }
+    sums
 }
 
 /// The guesses that fit best.
@@ -182,6 +210,8 @@ impl Best {
 
 /// The matrices of a warp by `distance`.
 fn fill(even: &mut Columns, odd: &mut Columns, distance: f32) {
+    *even = [[0.0; MOST_COMPARED]; IN];
+    *odd = [[0.0; MOST_COMPARED]; IN];
     let share = 2.0 / SAMPLES as f32;
     for sample in 0..SAMPLES {
         let theta = PI * (sample as f32 + 0.5) / SAMPLES as f32;
@@ -230,7 +260,7 @@ impl HomingMethod for WarpSearch {
         let [mut ahead, mut goal] = [*seen, stored];
         for direction in 0..DIRECTIONS {
             for distance in 0..DISTANCES as u8 {
-                let moved = self.warped(&ahead, usize::from(distance));
+                let moved = self.warped(&ahead, usize::from(distance), self.compared());
                 self.compare(&moved, &goal, &mut best, [direction, distance]);
             }
             rotate(&mut ahead.0[..IN], step);
@@ -260,14 +290,17 @@ impl WarpSearch {
         let mut ahead = *seen;
         rotate(&mut ahead.0[..IN], angle);
         let mut moved = Harmonics::NONE;
-        moved.0[..OUT].copy_from_slice(&self.warped(&ahead, usize::from(best.distance)));
-        rotate(&mut moved.0[..OUT], -angle);
+        // The gradient of the last frequency leans on the next.
+        let count = self.compared() + 1;
+        let warped = self.warped(&ahead, usize::from(best.distance), count);
+        moved.0[..MOST_COMPARED].copy_from_slice(&warped);
+        rotate(&mut moved.0[..MOST_COMPARED], -angle);
         let mut goal = *stored;
         rotate(&mut goal.0[..MOST_COMPARED], -best.rotation);
         let model = Model {
             weights: &self.weights,
             frequencies: self.compared(),
-            next_term: true,
+            next_term: self.compared() < MOST_COMPARED,
             with_turn: self.parameters.rotations > 0,
         };
         if let Ok(step) = quadratic::minimum(&model, &moved, &goal) {
