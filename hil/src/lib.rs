@@ -34,5 +34,6 @@ pub mod recorder;
 pub mod report;
 pub mod scenario;
 pub mod sensing;
+pub mod size;
 pub mod steps;
 pub mod summary;

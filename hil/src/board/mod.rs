@@ -85,6 +85,9 @@ pub enum BoardError {
     /// The image lacks a symbol that the rig needs.
     #[error("the image has no symbol `{0}`: is it this project's firmware?")]
     NoSymbol(&'static str),
+    /// The image's debug information cannot be read.
+    #[error("the image's debug information cannot be read: {0}")]
+    DebugInformation(String),
     /// The firmware never started its camera.
     #[error(
         "the camera did not send a frame within {seconds} s of power-on; the firmware's log:\n{log}"

@@ -26,6 +26,7 @@ mod link_check;
 mod live;
 mod look;
 mod profile;
+mod size;
 mod steps;
 mod world;
 
@@ -82,6 +83,8 @@ enum Verb {
     ImportCf(import_cf::Arguments),
     /// Holds the link's codec against records of another implementation's
     LinkCheck(link_check::Arguments),
+    /// Says what the image takes of flash, RAM and stack
+    Size(size::Arguments),
     /// Profiles a flight: cycles by stage, task and interrupt
     Profile(profile::Arguments),
     /// Draws what the camera sees from a place, and what of it is remembered
@@ -120,6 +123,7 @@ pub fn main() -> ExitCode {
         Verb::HomingCycles(arguments) => homing_cycles::run(&arguments, &console),
         Verb::ImportCf(arguments) => import_cf::run(&arguments, &console),
         Verb::LinkCheck(arguments) => link_check::run(&arguments, &console),
+        Verb::Size(arguments) => size::run(&arguments, &console),
         Verb::Profile(arguments) => profile::run(&arguments, &console),
         Verb::Look(arguments) => look::run(&arguments, &console),
         Verb::Film(arguments) => film::run(&arguments, &console),

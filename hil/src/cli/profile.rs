@@ -1,15 +1,19 @@
 //! `hil profile`: where the cycles of a flight go.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::Failure;
 use super::console::Console;
 use super::fly::{Image, ScenarioArguments};
-use crate::profile::{self, Profile, Profiled, Quantiles, Stage, Window};
+use crate::profile::{self, Profile, Profiled, Quantiles, Stage, Window, flame};
 use crate::report::number::grouped;
+use crate::scenario::Scenario;
+
+/// Functions that are told in words.
+const FUNCTIONS_TOLD: usize = 25;
 
 /// Misses that are told in words.
 const MISSES_TOLD: usize = 10;
@@ -20,7 +24,8 @@ const MISSES_TOLD: usize = 10;
     hil profile                                    the default flight\n  \
     hil profile --route corner --json              a short one, for scripts\n  \
     hil profile --trace flight.json                two seconds of it, to be opened in ui.perfetto.dev\n  \
-    hil profile --trace all.json --window 0,600    all of it\n\n\
+    hil profile --trace all.json --window 0,600    all of it\n  \
+    hil profile --functions flame.svg              exact cycles by function, as a flame graph\n\n\
     Cycles are the emulated core's, read at the functions of the image: nothing is added to the firmware. Interrupts are\n\
     charged to themselves, a stage within another to itself. They are modelled: silicon may differ by 10 to 15 % on code\n\
     that computes and by 25 % on drivers (see `hil calibrate-timing`).\n\
@@ -37,6 +42,10 @@ pub struct Arguments {
     /// The time line's piece of the flight: from a second on and, after a comma, for how many
     #[arg(long, value_name = "SECOND[,SECONDS]", default_value = "60,2", value_parser = parse_window, requires = "trace")]
     window: Window,
+    /// Draws cycles by function, inlined ones included, as a flame graph (.svg), or lists them in folded stacks; looks at
+    /// every instruction, which takes ten times as long
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["trace", "json"])]
+    functions: Option<PathBuf>,
     /// Ends with one JSON object: frames, stages, vision, pixel_to_vector_s, load, missed and more
     #[arg(long)]
     json: bool,
@@ -61,6 +70,9 @@ fn parse_window(text: &str) -> Result<Window, String> {
 pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     let image = Image::get(arguments.firmware.clone(), console)?;
     let scenario = arguments.scenario.scenario(arguments.seed);
+    if let Some(path) = &arguments.functions {
+        return by_function(&scenario, &image, path, console);
+    }
     let window = arguments.trace.is_some().then_some(arguments.window);
     let mut bar = console.progress("Profiling", 1000);
     let profiled = profile::fly(&scenario, &image.bytes, window, &mut |progress| {
@@ -79,6 +91,34 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
         console.result(&in_words(&profiled))?;
     }
     Ok(profiled.profile.missed == 0)
+}
+
+fn by_function(
+    scenario: &Scenario,
+    image: &Image,
+    path: &Path,
+    console: &Console,
+) -> Result<bool, Failure> {
+    let mut bar = console.progress("Profiling", 1000);
+    let flown = profile::fly_by_function(scenario, &image.bytes, &mut |progress| {
+        bar.set((1000.0 * progress.fraction) as u64, || progress.to_string());
+    });
+    bar.finish();
+    let (flown, stacks) = flown.map_err(|error| image.failure(error))?;
+    let text = if path.extension().is_some_and(|extension| extension == "svg") {
+        flame::picture(&stacks)
+    } else {
+        stacks.folded()
+    };
+    fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+    console.status("Functions", &path.display().to_string());
+    let all = stacks.total().max(1) as f64;
+    let functions = stacks.by_function();
+    for (name, cycles) in functions.iter().take(FUNCTIONS_TOLD) {
+        let share = 100.0 * *cycles as f64 / all;
+        console.result(&format!("{share:>7.2} %{:>14}  {name}", grouped(*cycles)))?;
+    }
+    Ok(flown.summary.completed)
 }
 
 fn in_words(profiled: &Profiled) -> String {

@@ -2,9 +2,13 @@
 //! the image. Nothing is added to the firmware, and its flight is the same to the byte.
 
 mod figures;
+pub mod flame;
 mod frames;
+mod functions;
+mod inlined;
 mod ledger;
 mod profiler;
+mod stacks;
 mod stage;
 mod symbols;
 mod timeline;
@@ -16,7 +20,9 @@ use crate::scenario::Scenario;
 
 pub use figures::{Load, Model, Profile, Quantiles};
 pub use frames::{FrameProfile, Miss};
+pub use functions::FunctionProfiler;
 pub use profiler::Profiler;
+pub use stacks::Stacks;
 pub use stage::Stage;
 pub use symbols::{Function, Symbols};
 pub use timeline::{Timeline, Window};
@@ -51,4 +57,16 @@ pub fn fly(
         frames,
         timeline,
     })
+}
+
+/// Flies a scenario instruction by instruction: cycles by function and by who called it.
+pub fn fly_by_function(
+    scenario: &Scenario,
+    elf: &[u8],
+    progress: &mut dyn FnMut(Progress),
+) -> Result<(Flown, Stacks), FlightError> {
+    let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
+    let mut profiler = FunctionProfiler::default();
+    let flown = flight::fly_watched(scenario, &firmware, &mut profiler, progress)?;
+    Ok((flown, profiler.finish(elf)?))
 }
