@@ -20,6 +20,9 @@ const C_NAMES: &str = "(C names)";
 /// What no symbol names: strings and tables of constants above all.
 const UNNAMED: &str = "(unnamed)";
 
+/// The compiler's own labels round statics that have names.
+const MERGED: &str = ".L_MergedGlobals";
+
 /// Bytes of flash and of RAM.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Bytes {
@@ -83,17 +86,24 @@ impl Size {
     }
 }
 
-/// Several names of one place count once; equal names are one.
+/// What several names share, or one within another, counts once: for the first. Equal names are one.
 fn by_symbol(image: &Image) -> BTreeMap<String, Bytes> {
     let mut places: BTreeMap<u32, (&str, u32)> = BTreeMap::new();
-    for (name, Symbol { address, size }) in image.symbols() {
+    let named = image
+        .symbols()
+        .filter(|(name, _)| !name.starts_with(MERGED));
+    for (name, Symbol { address, size }) in named {
         let place = places.entry(address).or_default();
         if size > place.1 {
             *place = (name, size);
         }
     }
     let mut symbols: BTreeMap<String, Bytes> = BTreeMap::new();
+    let mut counted = 0;
     for (address, (name, size)) in places {
+        let end = address.saturating_add(size);
+        let size = end.saturating_sub(address.max(counted));
+        counted = counted.max(end);
         let bytes = Bytes {
             flash: if within(address, FLASH, FLASH_BYTES) {
                 size
@@ -131,6 +141,7 @@ fn crate_of(name: &str) -> &str {
     match with_path.and_then(|part| part.split("::").next()) {
         Some(first) if !first.is_empty() => first
             .trim_start_matches("mut ")
+            .trim_start_matches("dyn ")
             .trim_start_matches(['<', '&']),
         _ => C_NAMES,
     }
@@ -147,6 +158,7 @@ mod tests {
             ("<core::fmt::Formatter>::pad", "core"),
             ("<&T as core::fmt::Debug>::fmt", "core"),
             ("link::body::<impl link::message::Message>::read", "link"),
+            ("<dyn core::any::Any>::is", "core"),
             ("vision_frame", C_NAMES),
         ] {
             assert_eq!(crate_of(name), owner, "{name}");
