@@ -50,15 +50,18 @@ struct Graph {
 impl Graph {
     /// What a function calls, side by side, and so on downwards.
     fn row(&self, stacks: &Stacks, left: f64, top: f64) -> Markup {
-        let mut left = left;
+        let mut right = left;
+        let cells = stacks.callees.iter().map(|(name, callee)| {
+            let width = callee.total() as f64 * self.scale;
+            right += width;
+            (name, callee, right - width, width)
+        });
         html! {
-            @for (name, callee) in &stacks.callees {
-                @let width = callee.total() as f64 * self.scale;
+            @for (name, callee, left, width) in cells {
                 @if width >= NARROWEST {
                     (self.cell(name, callee, [left, top], width))
                     (self.row(callee, left, top + ROW))
                 }
-                @let _ = left += width;
             }
         }
     }
@@ -123,9 +126,7 @@ mod tests {
         let picture = picture(&stacks);
         // Half of the width between the margins.
         assert!(picture.contains(r#"width="583.5""#), "{picture}");
-        assert!(
-            picture.contains("nav::half: 500 000 cycles, 50.00 %") || picture.contains("50.00 %")
-        );
+        assert!(picture.contains("50.00 %"));
         assert!(!picture.contains("speck"));
     }
 }
