@@ -32,6 +32,7 @@ pub mod profile;
 pub mod record;
 pub mod recorder;
 pub mod report;
+pub mod rig;
 pub mod scenario;
 pub mod sensing;
 pub mod size;

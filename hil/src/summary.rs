@@ -11,7 +11,7 @@ pub struct Summary {
     pub completed: bool,
     /// Why the flight ended, for people.
     pub outcome: String,
-    /// `emulator`, `native`, or `cfclient` where it was imported.
+    /// `emulator`, `native`, `board`, or `cfclient` where it was imported.
     pub backend: &'static str,
     /// Seed of world, sensors and camera noise.
     pub seed: u64,
@@ -127,10 +127,11 @@ pub struct CyclesPerFrame {
     pub p99: u32,
     /// Largest.
     pub max: u32,
-    /// Median by the emulator's counter, read at the entry and return of the same function.
-    pub emulator_p50: u32,
-    /// Largest difference of the two counters over all frames.
-    pub largest_disagreement: u32,
+    /// Median by the emulator's counter, read at the entry and return of the same function; none on a
+    /// board that is there.
+    pub emulator_p50: Option<u32>,
+    /// Largest difference of the two counters over all frames; none on a board that is there.
+    pub largest_disagreement: Option<u32>,
 }
 
 /// What the image needs.

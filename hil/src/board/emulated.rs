@@ -11,9 +11,10 @@ use fake_sensors::camera::Pose;
 use sensor::tcm8230::SETTLING_FRAMES;
 
 use super::camera::Camera;
-use super::firmware_log::LogTable;
+use super::firmware_log::{LogDecoder, LogTable};
 use super::observer::{Interest, Observer};
 use super::probe::Probe;
+use super::rtt::UpChannel;
 use super::sabotage::Sabotaged;
 use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog};
 use crate::scenario::{CameraTrouble, LensPage};
@@ -78,6 +79,16 @@ impl Firmware {
     /// A probe for the image's log.
     pub fn probe(&self) -> Result<Probe<'_>, BoardError> {
         Probe::new(&self.image, &self.table)
+    }
+
+    /// A decoder for what the image logs.
+    pub(crate) fn log_decoder(&self) -> LogDecoder<'_> {
+        LogDecoder::new(&self.table)
+    }
+
+    /// Where the image's log is in the chip's memory.
+    pub(crate) fn log_channel(&self) -> Result<UpChannel, BoardError> {
+        UpChannel::of(&self.image).ok_or(BoardError::NoSymbol(UpChannel::SYMBOL))
     }
 
     /// A chip with all of it, on a board with this wiring, switched on.

@@ -81,7 +81,7 @@ impl<'t> LogDecoder<'t> {
 }
 
 /// A record that the rig reads by machine, or else a line for people.
-fn understood(level: &'static str, text: String, origin: Origin) -> FirmwareLog {
+pub(crate) fn understood(level: &'static str, text: String, origin: Origin) -> FirmwareLog {
     let origin = Some(origin);
     if let Some(frame) = frame(&text) {
         FirmwareLog::Frame(frame)

@@ -3,13 +3,13 @@
 
 pub mod camera;
 pub mod emulated;
-mod firmware_log;
+pub(crate) mod firmware_log;
 pub mod native;
 pub mod observer;
 pub mod origin;
 mod poses;
 pub mod probe;
-mod rtt;
+pub(crate) mod rtt;
 pub mod sabotage;
 pub mod serial_frames;
 

@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::Failure;
 use super::console::Console;
+use super::desk::DeskArguments;
 use super::fly::Image;
 use super::live::{LiveArguments, prepare, say};
 use super::world;
@@ -21,7 +22,9 @@ use crate::live::{EmulateSetup, PoseSource, Stop, emulate};
     \x20                                       TX to RX2, ground to ground (921600 baud)\n  \
     hil emulate --gdb 3333                  for gdb-multiarch ELF -ex 'target remote :3333': break and watch\n  \
     \x20                                       points, registers, memory; virtual time stands still while halted\n  \
-    hil emulate --link pty --pose tcp:6000  for a simulator of yours (SITL) that knows the true pose\n\n\
+    hil emulate --link pty --pose tcp:6000  for a simulator of yours (SITL) that knows the true pose\n  \
+    hil emulate --link pty --frames pty --probe tcp:5770 --write-rig emulated.toml\n  \
+    \x20                                       a board on the desk, for `hil fly --backend board --rig emulated.toml`\n\n\
     The link: pprzlink 2.0 with the messages of the visual-homing app, as on the UART of the board.\n\
     With tcp, whoever comes first listens and the other one connects; either may start again.\n\n\
     The pose: one JSON object a line,\n  \
@@ -54,10 +57,17 @@ pub struct Arguments {
     /// An image that is already built [default: this checkout's, built first]
     #[arg(long, value_name = "ELF")]
     firmware: Option<PathBuf>,
+    #[command(flatten)]
+    desk: DeskArguments,
 }
 
 pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     let live = &arguments.live;
+    if let Some(frames) = &arguments.desk.frames {
+        return arguments
+            .desk
+            .run(live, frames, arguments.firmware.clone(), console);
+    }
     let pose = arguments
         .pose
         .unwrap_or_else(|| PoseSource::beside(live.link()));

@@ -3,16 +3,24 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use frames::Identity;
 
 use super::Failure;
 use super::conditions::ConditionArguments;
 use super::console::Console;
-use super::world;
+use super::{live, world};
+use crate::board::emulated::Firmware;
 use crate::flight::{self, FlightError, Flown, Progress};
 use crate::folder;
-use crate::image;
+use crate::image::{self, Variant};
+use crate::live::Stop;
+use crate::rig::file::Rig;
+use crate::rig::{BoardSetup, fly_board, probe};
 use crate::scenario::{Homing, Route, Scenario, Spacing};
 use crate::summary::{DirectionFigures, Summary};
+
+/// Share of late steps up to which a flight counts as one in real time.
+const MOST_LATE: f64 = 0.01;
 
 /// The board a flight is flown on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -22,6 +30,8 @@ pub enum Backend {
     Emulator,
     /// The same logic compiled for this machine: faster, without timing
     Native,
+    /// A board that is there, in real time (--rig)
+    Board,
 }
 
 impl Backend {
@@ -30,6 +40,7 @@ impl Backend {
         match self {
             Self::Emulator => "emulator",
             Self::Native => "native",
+            Self::Board => "board",
         }
     }
 }
@@ -84,7 +95,8 @@ fn parse_spacing(text: &str) -> Result<Spacing, String> {
     hil fly --route s --spacing 1 --json    one JSON object on stdout\n  \
     hil fly --route line --homing sequence  home by the camera alone\n  \
     hil fly --corrupt 1% --quirk self-acknowledge\n  \
-    hil fly --restart-autopilot 120         a brown-out in mid-route\n\n\
+    hil fly --restart-autopilot 120         a brown-out in mid-route\n  \
+    hil fly --backend board --rig discovery a board on the desk, in real time; frames over serial\n\n\
     In a checkout, `cargo fly` is `hil fly`, built first.\n\
     Exit code 0: the drone came home. 1: it did not. 2: the flight could not be flown.")]
 pub struct Arguments {
@@ -93,6 +105,9 @@ pub struct Arguments {
     /// The board
     #[arg(long, value_enum, default_value_t)]
     backend: Backend,
+    /// The rig of the backend `board`: the path of its file, or its name
+    #[arg(long, value_name = "NAME|FILE", required_if_eq("backend", "board"))]
+    rig: Option<String>,
     /// Seed of world, sensors and camera noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -114,13 +129,23 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
         .clone()
         .unwrap_or_else(|| folder::default_path(&scenario, arguments.backend.name()));
     let unwritable = |error| format!("{}: {error}", out.display());
+    let rig = match (arguments.backend, &arguments.rig) {
+        (Backend::Board, Some(rig)) => Some(Rig::open(rig)?),
+        (_, Some(_)) => return Err("--rig is for --backend board".into()),
+        (_, None) => None,
+    };
     let image = match arguments.backend {
         Backend::Native => None,
+        Backend::Board => rig
+            .as_ref()
+            .map(|rig| Image::for_rig(arguments.firmware.clone(), rig, console))
+            .transpose()?,
         Backend::Emulator => Some(Image::get(arguments.firmware.clone(), console)?),
     };
     // Before the flight: minutes in the air are not to be lost to a folder that cannot be written.
     folder::prepare(&out).map_err(unwritable)?;
     let flown = match &image {
+        Some(image) if let Some(rig) = &rig => on_board(&scenario, rig, image, console)?,
         None => with_progress(console, |progress| flight::fly_native(&scenario, progress))?,
         Some(image) => with_progress(console, |progress| {
             flight::fly_emulated(&scenario, &image.bytes, progress)
@@ -129,6 +154,7 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     };
     folder::write(&out, &flown).map_err(unwritable)?;
     console.status("Report", &out.join("report.html").display().to_string());
+    kept_step(&flown)?;
     if arguments.json {
         console.result(&serde_json::to_string(&flown.summary)?)?;
     } else {
@@ -137,21 +163,101 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     Ok(flown.summary.completed)
 }
 
+/// Flies on a rig, which says what happens while it happens.
+fn on_board(
+    scenario: &Scenario,
+    rig: &Rig,
+    image: &Image,
+    console: &Console,
+) -> Result<Flown, Failure> {
+    let conditions = &scenario.conditions;
+    if conditions.camera.is_some() || conditions.lens.is_some() {
+        return Err("a camera fault or a lens of its own wants the emulator".into());
+    }
+    let firmware = Firmware::parse(&image.bytes)?;
+    let stop = Stop::on_signals()?;
+    let setup = BoardSetup {
+        rig,
+        image: image.on_board(&firmware),
+        identity: image.identity(),
+        scenario: scenario.clone(),
+        speed: 1.0,
+        stop: &stop,
+    };
+    let flight = fly_board(&setup, &|notice| live::say(console, notice))?;
+    match &flight.transcript {
+        Some(Ok(transcript)) if transcript.snapshots()? == flight.snapshots() => {
+            let text = "the board took every snapshot as this machine does from the same frames";
+            console.status("Twin", text);
+        }
+        Some(Ok(_)) => {
+            let text = "the board took other snapshots than this machine does from the same frames";
+            return Err(text.into());
+        }
+        Some(Err(gap)) => console.warning(&format!("not held against this machine: {gap}")),
+        None => {}
+    }
+    Ok(flight.flown)
+}
+
+/// A flight against the clock that did not keep step with it is none.
+fn kept_step(flown: &Flown) -> Result<(), Failure> {
+    match &flown.summary.live {
+        Some(live) if live.pace.late_share > MOST_LATE => Err(format!(
+            "{:.1} % of the steps began late: this machine has too much else to do",
+            100.0 * live.pace.late_share
+        )
+        .into()),
+        _ => Ok(()),
+    }
+}
+
 /// A firmware image and where it came from.
 pub(super) struct Image {
-    elf: PathBuf,
+    pub(super) elf: PathBuf,
     pub(super) bytes: Vec<u8>,
 }
 
 impl Image {
-    /// The image that was given, or else the one of this checkout.
+    /// The image that was given, or else the one of this checkout that flies.
     pub(super) fn get(given: Option<PathBuf>, console: &Console) -> Result<Self, Failure> {
+        Self::of(given, &Variant::FLIGHT, console)
+    }
+
+    /// The image that was given, or else this checkout's for a rig's board.
+    pub(super) fn for_rig(
+        given: Option<PathBuf>,
+        rig: &Rig,
+        console: &Console,
+    ) -> Result<Self, Failure> {
+        Self::of(given, &rig.variant(), console)
+    }
+
+    /// The image that was given, or else this checkout's of a variant.
+    pub(super) fn of(
+        given: Option<PathBuf>,
+        variant: &Variant,
+        console: &Console,
+    ) -> Result<Self, Failure> {
         let elf = match given {
             Some(elf) => elf,
-            None => image::build(&|line| console.status("Firmware", line))?,
+            None => image::build_variant(variant, &|line| console.status("Firmware", line))?,
         };
         let bytes = std::fs::read(&elf).map_err(|error| format!("{}: {error}", elf.display()))?;
         Ok(Self { elf, bytes })
+    }
+
+    /// As a probe needs it.
+    pub(super) fn on_board<'i>(&'i self, firmware: &'i Firmware) -> probe::Image<'i> {
+        probe::Image {
+            elf: &self.elf,
+            firmware,
+        }
+    }
+
+    /// What it says of itself; none where it says nothing.
+    pub(super) fn identity(&self) -> Option<Identity> {
+        image::identity(&self.bytes).ok()
     }
 
     pub(super) fn failure(&self, error: FlightError) -> Failure {

@@ -13,19 +13,24 @@ mod campaign;
 mod catchment;
 mod conditions;
 mod console;
+mod desk;
 mod drift;
 mod ekf_replay;
 mod emulate;
 mod exposure;
 mod film;
+mod flash;
 mod fly;
 mod homing_check;
 mod homing_cycles;
 mod import_cf;
+mod info;
 mod link_check;
 mod live;
+mod log;
 mod look;
 mod profile;
+mod rig;
 mod size;
 mod steps;
 mod world;
@@ -65,6 +70,14 @@ enum Verb {
     Autopilot(autopilot::Arguments),
     /// Measures how fast the rig itself is on this machine
     Bench(bench::Arguments),
+    /// Looks at the rig of a board on the desk
+    Rig(rig::Arguments),
+    /// Puts an image onto a rig's board
+    Flash(flash::Arguments),
+    /// Shows what a rig's board logs
+    Log(log::Arguments),
+    /// Says what is on a rig's board
+    Info(info::Arguments),
     /// Flies many seeds and prints their statistics
     Campaign(campaign::Arguments),
     /// Measures from where a snapshot of so many bytes brings a robot home
@@ -114,6 +127,10 @@ pub fn main() -> ExitCode {
         Verb::Emulate(arguments) => emulate::run(&arguments, &console),
         Verb::Autopilot(arguments) => autopilot::run(&arguments, &console),
         Verb::Bench(arguments) => bench::run(&arguments, &console),
+        Verb::Rig(arguments) => rig::run(&arguments, &console),
+        Verb::Flash(arguments) => flash::run(&arguments, &console),
+        Verb::Log(arguments) => log::run(&arguments, &console),
+        Verb::Info(arguments) => info::run(&arguments, &console),
         Verb::Campaign(arguments) => campaign::run(&arguments, &console),
         Verb::Catchment(arguments) => catchment::run(&arguments, &console),
         Verb::Calibrate(arguments) => calibrate::run(&arguments, &console),

@@ -87,7 +87,7 @@ pub fn summary(scenario: &Scenario, recording: &Recording, end: End) -> Summary 
     }
 }
 
-/// The firmware's own readings, held against the emulator's of the same frames.
+/// The firmware's own readings, held against the emulator's of the same frames where there are some.
 fn cycles_per_frame(recording: &Recording, figures: &BoardFigures) -> Option<CyclesPerFrame> {
     let own: Vec<u32> = recording
         .frames
@@ -95,13 +95,16 @@ fn cycles_per_frame(recording: &Recording, figures: &BoardFigures) -> Option<Cyc
         .filter_map(|frame| frame.cycles)
         .collect();
     let pairs = own.iter().zip(&figures.traced_cycles);
-    let largest_disagreement = pairs.map(|(own, traced)| own.abs_diff(*traced)).max()?;
+    let largest_disagreement = pairs.map(|(own, traced)| own.abs_diff(*traced)).max();
+    if own.is_empty() {
+        return None;
+    }
     let (own, traced) = (sorted(&own), sorted(&figures.traced_cycles));
     Some(CyclesPerFrame {
         p50: quantile(&own, 0.5),
         p99: quantile(&own, 0.99),
         max: quantile(&own, 1.0),
-        emulator_p50: quantile(&traced, 0.5),
+        emulator_p50: (!traced.is_empty()).then(|| quantile(&traced, 0.5)),
         largest_disagreement,
     })
 }

@@ -4,9 +4,11 @@ use std::thread;
 use std::time::Duration;
 
 use autopilot::app::{Outcome, Phase};
+use fake_sensors::camera;
 use fake_sensors::world::World;
 
 use crate::board::BoardFigures;
+use crate::board::emulated::Firmware;
 use crate::flight::aircraft::Aircraft;
 use crate::flight::wire::Wire;
 use crate::flight::{self, Flown, sum_up};
@@ -40,12 +42,75 @@ pub struct AutopilotSetup<'s> {
     pub pose: Option<TcpPort>,
 }
 
+/// What is done in each millisecond for the board at the link, and what is known of it in the end.
+pub trait Attendant {
+    /// One millisecond.
+    ///
+    /// # Errors
+    /// [`LiveError`] where the flight cannot go on.
+    fn attend(&mut self, moment: &Moment, scribe: &mut Scribe) -> Result<(), LiveError>;
+
+    /// After the flight. Writes down what is left to say.
+    fn finish(&mut self, now_ms: u64, scribe: &mut Scribe) -> Account<'_>;
+}
+
+/// A flight at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Flight time, milliseconds.
+    pub now_ms: u64,
+    /// Where the camera is.
+    pub camera: camera::Pose,
+    /// Whether there is a peer at the link.
+    pub linked: bool,
+}
+
+/// What is known of a board after a flight.
+#[derive(Debug)]
+pub struct Account<'f> {
+    /// Its name in the summary.
+    pub backend: &'static str,
+    /// Its counters.
+    pub figures: BoardFigures,
+    /// The image, where that is known.
+    pub firmware: Option<&'f Firmware>,
+}
+
+/// The board is somebody else's.
+struct NoAttendant;
+
+impl Attendant for NoAttendant {
+    fn attend(&mut self, _: &Moment, _: &mut Scribe) -> Result<(), LiveError> {
+        Ok(())
+    }
+
+    fn finish(&mut self, _: u64, _: &mut Scribe) -> Account<'_> {
+        Account {
+            backend: BOARD,
+            figures: BoardFigures::default(),
+            firmware: None,
+        }
+    }
+}
+
 /// Flies a scenario for a camera board at the link, from when somebody is there until the drone has
 /// landed, somebody asks to end, or the limit.
 ///
 /// # Errors
 /// [`LiveError`] where it cannot begin.
 pub fn fly_aircraft(setup: &AutopilotSetup, say: &dyn Fn(Notice)) -> Result<Flown, LiveError> {
+    fly_attended(setup, &mut NoAttendant, say)
+}
+
+/// The same for a board that has to be attended to.
+///
+/// # Errors
+/// [`LiveError`] where it cannot begin, or where the attendant cannot go on.
+pub fn fly_attended(
+    setup: &AutopilotSetup,
+    attendant: &mut dyn Attendant,
+    say: &dyn Fn(Notice),
+) -> Result<Flown, LiveError> {
     let scenario = &setup.scenario;
     let world = World::open(&scenario.world, scenario.seed)?;
     let route = scenario.route.waypoints();
@@ -67,9 +132,9 @@ pub fn fly_aircraft(setup: &AutopilotSetup, say: &dyn Fn(Notice)) -> Result<Flow
         if let Some(late) = pacer.falls_behind() {
             session.scribe.behind(session.now_ms, late);
         }
-        session.step();
+        session.step(attendant)?;
     }
-    Ok(session.finish(setup, &pacer))
+    Ok(session.finish(setup, &pacer, attendant))
 }
 
 /// An aircraft with its ports.
@@ -124,7 +189,13 @@ impl Session<'_> {
     }
 
     /// One millisecond.
-    fn step(&mut self) {
+    fn step(&mut self, attendant: &mut dyn Attendant) -> Result<(), LiveError> {
+        let moment = Moment {
+            now_ms: self.now_ms,
+            camera: self.aircraft.camera_pose(),
+            linked: self.link.has_peer(),
+        };
+        attendant.attend(&moment, &mut self.scribe)?;
         let mut received = Vec::new();
         self.meet(&mut received);
         for message in self.wire.carry_to_autopilot(&mut received) {
@@ -139,6 +210,7 @@ impl Session<'_> {
             self.tell_pose();
         }
         self.now_ms += 1;
+        Ok(())
     }
 
     fn meet(&mut self, received: &mut Vec<u8>) {
@@ -197,8 +269,14 @@ impl Session<'_> {
         }
     }
 
-    fn finish(mut self, setup: &AutopilotSetup, pacer: &Pacer) -> Flown {
+    fn finish(
+        mut self,
+        setup: &AutopilotSetup,
+        pacer: &Pacer,
+        attendant: &mut dyn Attendant,
+    ) -> Flown {
         self.name_the_rest();
+        let account = attendant.finish(self.now_ms, &mut self.scribe);
         let live = LiveFigures {
             pace: pacer.figures(),
             link: setup.common.link.to_string(),
@@ -216,9 +294,9 @@ impl Session<'_> {
             completed: self.aircraft.phase() == Phase::Landed(Outcome::Completed),
             outcome: outcome(&self.aircraft, &setup.scenario),
             flight_s: Duration::from_millis(self.now_ms).as_secs_f64(),
-            figures: BoardFigures::default(),
-            backend: BOARD,
-            firmware: None,
+            figures: account.figures,
+            backend: account.backend,
+            firmware: account.firmware,
             link: self.wire.figures(&recording),
             wall: pacer.elapsed(),
         };

@@ -20,19 +20,20 @@ mod scribe;
 mod stop;
 mod watch;
 
-pub use autopilot::{AutopilotSetup, fly_aircraft};
+pub use autopilot::{Account, Attendant, AutopilotSetup, Moment, fly_aircraft, fly_attended};
 pub use emulate::{EmulateSetup, emulate};
 pub use endpoint::{Endpoint, EndpointError, PoseSource, TcpPort, beside};
 pub use pace::{LATE, Pacer};
 pub use port::{News, OpenError, Port, Unsent};
 pub use pose::{Eyes, PoseError, PoseLine, PoseLines, Seen};
-pub use scribe::Notice;
+pub use scribe::{Notice, Scribe};
 pub use stop::Stop;
 
 use fake_sensors::world::WorldError;
 
 use crate::board::BoardError;
 use crate::gdb::PortError;
+use crate::rig::Unready;
 
 /// A live flight that could not be flown.
 #[derive(Debug, thiserror::Error)]
@@ -49,6 +50,9 @@ pub enum LiveError {
     /// The GDB server's port cannot be opened.
     #[error(transparent)]
     Gdb(#[from] PortError),
+    /// The board on the desk does not take part.
+    #[error(transparent)]
+    Rig(#[from] Unready),
 }
 
 /// What both halves share of their setup.
@@ -68,7 +72,7 @@ pub struct Common<'s> {
 
 impl Common<'_> {
     /// Whether it is time to end.
-    fn over(&self, now_ms: u64) -> bool {
+    pub(crate) fn over(&self, now_ms: u64) -> bool {
         self.stop.requested() || self.limit_ms.is_some_and(|limit_ms| now_ms >= limit_ms)
     }
 }

@@ -28,6 +28,11 @@ impl Stop {
         Ok(stop)
     }
 
+    /// Asks.
+    pub fn request(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
     /// Whether somebody has asked.
     pub fn requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)

@@ -97,6 +97,15 @@ pub struct OpenError {
     error: io::Error,
 }
 
+impl OpenError {
+    pub(crate) fn new(endpoint: &dyn fmt::Display, error: io::Error) -> Self {
+        Self {
+            endpoint: endpoint.to_string(),
+            error,
+        }
+    }
+}
+
 /// One end of a wire.
 #[derive(Debug)]
 pub struct Port {
@@ -144,10 +153,7 @@ impl Port {
         opened: io::Result<(Box<dyn Meeting>, String)>,
         endpoint: &dyn fmt::Display,
     ) -> Result<Self, OpenError> {
-        let (meeting, place) = opened.map_err(|error| OpenError {
-            endpoint: endpoint.to_string(),
-            error,
-        })?;
+        let (meeting, place) = opened.map_err(|error| OpenError::new(endpoint, error))?;
         Ok(Self {
             meeting,
             peer: None,
@@ -195,6 +201,15 @@ impl Port {
             });
         }
         news
+    }
+
+    /// Sends as many of `bytes` as the peer keeps up with; how many that are.
+    ///
+    /// # Errors
+    /// [`Unsent::NoPeer`].
+    pub fn send_some(&mut self, bytes: &[u8]) -> Result<usize, Unsent> {
+        let some = bytes.len().min(UNSENT_BYTES - self.unsent.len());
+        self.send(&bytes[..some]).map(|()| some)
     }
 
     /// Sends all of `bytes`, now or as soon as the peer reads; or nothing of it.
