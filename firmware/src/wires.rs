@@ -12,7 +12,7 @@ use crate::capture::Frame;
 /// What vision acts on, in the order in which it happened.
 #[expect(
     clippy::large_enum_variant,
-    reason = "there is no heap to box a message in, and eight of them are 2 KiB"
+    reason = "there is no heap to box a message in, and four of them are 1.1 KiB"
 )]
 pub enum Event {
     /// From the camera task: a whole frame.
@@ -27,9 +27,9 @@ pub enum Event {
 }
 
 /// Camera and link receiver to vision. One queue, so that frames and messages keep their order
-/// while vision is busy. At most two frames are of use at a time, and the autopilot sends two
-/// messages in 100 ms; the rest is for bursts after radio commands.
-pub static EVENTS: Channel<CriticalSectionRawMutex, Event, 8> = Channel::new();
+/// while vision is busy: for 0.3 ms at most, in which not even one message arrives. At most two frames
+/// are of use at a time, and the autopilot sends two messages in 100 ms.
+pub static EVENTS: Channel<CriticalSectionRawMutex, Event, 4> = Channel::new();
 
 /// Vision to exposure: the newest wish wins.
 pub static EXPOSURE: Signal<CriticalSectionRawMutex, Exposure> = Signal::new();

@@ -111,6 +111,7 @@ pub enum NoVectorReason {
 ///
 /// [`NoVectorReason`] where the views do not determine one. A vector is finite; its displacement is
 /// clipped to [`HomingParameters::displacement_bound`].
+#[inline(never)]
 pub fn home(
     current: &Spectrum,
     snapshot: &Snapshot,

@@ -193,6 +193,22 @@ fn a_heading_that_is_not_finite_does_no_harm() {
     }
 }
 
+#[test]
+fn a_table_with_a_sample_outside_the_frame_is_refused() {
+    let table =
+        |bytes| SampleTable::new(bytes, |bearing, sample| (bearing * RADII + sample) as u16);
+    assert!(table(BEARINGS * RADII).is_some());
+    assert!(table(BEARINGS * RADII - 1).is_none());
+}
+
+#[test]
+fn a_frame_that_is_too_short_is_black() {
+    let map = PanoramaMap::new(&LensCalibration::DEFAULT, &LAYOUT).unwrap();
+    let (horizon, band) = map.horizon_and_band(&[7; FRAME_BYTES - 1], 0.0);
+    assert_eq!((horizon.luma(), band), ([0.0; BEARINGS], 0.0));
+    assert_eq!(map.band(&[7; FRAME_BYTES - 1]), LumaHistogram::new());
+}
+
 proptest! {
     #[test]
     fn every_sample_of_a_lens_that_fits_is_luma_inside_the_frame(

@@ -48,8 +48,7 @@ const NO_WAVES: Waves = Waves {
 /// Factors cos kφ_n, n in the order of the values, for some k side by side.
 type Factors<const K: usize, const WORDS: usize> = [[Pair; K]; WORDS];
 
-/// All factors, in 432 bytes. In RAM on the board: read from flash they would wait for it, 8 lines of
-/// 16 bytes being all that its data cache holds (RM0090 §3.4.2).
+/// All factors, in 432 bytes.
 struct Table {
     low: Factors<3, 16>,
     high: Factors<2, 16>,
@@ -58,10 +57,6 @@ struct Table {
     eighth: Factors<1, 8>,
 }
 
-#[cfg_attr(
-    all(target_arch = "arm", target_os = "none"),
-    unsafe(link_section = ".data.folded")
-)]
 static TABLE: Table = Table {
     low: factors([1, 3, 5]),
     high: factors([7, 9]),
@@ -72,9 +67,15 @@ static TABLE: Table = Table {
 
 /// Σ x_n cos kφ_n and -Σ x_n sin kφ_n for k = 1..=9, in parts of [`SUM_SCALE`]. Values up to 4,080.
 pub(super) fn low_frequencies(values: &[u16; BEARINGS]) -> [Complex<i32>; VIEW_FREQUENCIES] {
-    let (odd, even) = fold(|word| mirror(values, word));
-    let (half, rest) = fold(|word| even[word]);
-    let (quarter, _) = fold::<4>(|word| rest[word]);
+    let (values, _) = values.as_chunks();
+    let mut odd = [NO_WAVES; 16];
+    let mut even = [NO_WAVES; 16];
+    fold(|word| mirror(values, word), &mut odd, &mut even);
+    let mut half = [NO_WAVES; 8];
+    let mut rest = [NO_WAVES; 8];
+    fold(|word| even[word], &mut half, &mut rest);
+    let mut quarter = [NO_WAVES; 4];
+    fold(|word| rest[word], &mut quarter, &mut [NO_WAVES; 4]);
     let [c1, c3, c5] = sums(&odd, &TABLE.low);
     let [c7, c9] = sums(&odd, &TABLE.high);
     let [c2, c6] = sums(&half, &TABLE.halves);
@@ -86,10 +87,10 @@ pub(super) fn low_frequencies(values: &[u16; BEARINGS]) -> [Complex<i32>; VIEW_F
 
 /// The first fold, of two values: sums for the cosines, differences for the sines.
 #[inline(always)]
-fn mirror(values: &[u16; BEARINGS], word: usize) -> Waves {
-    // A value and the one after it; the compiler makes one load of it.
-    let pair = |n: usize| Pair::new(values[n] as i16, values[n + 1] as i16);
-    let (value, image) = (pair(2 * word), pair(BEARINGS - 2 - 2 * word).swapped());
+fn mirror(values: &[[u16; 2]], word: usize) -> Waves {
+    // The compiler makes one load of it.
+    let pair = |word: usize| Pair::new(values[word][0] as i16, values[word][1] as i16);
+    let (value, image) = (pair(word), pair(BEARINGS / 2 - 1 - word).swapped());
     Waves {
         cos: value.plus(image),
         sin: value.minus(image),
@@ -99,8 +100,11 @@ fn mirror(values: &[u16; BEARINGS], word: usize) -> Waves {
 /// A fold of twice as many words into what odd k need, with the sines' values in reverse, and what even
 /// k need.
 #[inline(always)]
-fn fold<const HALF: usize>(waves: impl Fn(usize) -> Waves) -> ([Waves; HALF], [Waves; HALF]) {
-    let (mut odd, mut even) = ([NO_WAVES; HALF], [NO_WAVES; HALF]);
+fn fold<const HALF: usize>(
+    waves: impl Fn(usize) -> Waves,
+    odd: &mut [Waves; HALF],
+    even: &mut [Waves; HALF],
+) {
     for word in 0..HALF {
         let (waves, image) = (waves(word), waves(2 * HALF - 1 - word));
         let cos = image.cos.swapped();
@@ -109,7 +113,6 @@ fn fold<const HALF: usize>(waves: impl Fn(usize) -> Waves) -> ([Waves; HALF], [W
         odd[HALF - 1 - word].sin = image.sin.plus(waves.sin.swapped());
         even[word].sin = waves.sin.minus(image.sin.swapped());
     }
-    (odd, even)
 }
 
 /// Σ values times factors, of the cosines and, negative, of the sines.
