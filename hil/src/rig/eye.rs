@@ -18,9 +18,10 @@ use super::transcript::UsedFrame;
 /// Without a word about a frame for so long after its last byte, the next one is sent. A board needs
 /// some 40 ms; adapters and their drivers some 20 more.
 const FORGET: Duration = Duration::from_millis(300);
-/// Frames that may wait for their verdict while another one is sent: the board's answer takes a
-/// moment in which the line would be idle.
-const MOST_AWAITING: usize = 2;
+/// Frames that may wait for their verdict before another one is sent. With one, every second frame of
+/// the camera is sent, more than the 10 a second that the paper's firmware looks at; with two all are,
+/// and the line at 3 Mbaud is never idle, which an emulated board keeps up with on a fast machine only.
+const MOST_AWAITING: usize = 1;
 /// Without a frame that was used for so long, the flight cannot go on.
 const BLIND: Duration = Duration::from_secs(3);
 
