@@ -42,6 +42,10 @@ static ANSWER: [AtomicU32; 4] = [const { AtomicU32::new(0) }; 4];
 static WARPS: StaticCell<WarpSearch> = StaticCell::new();
 
 /// One method at a time.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one of them, on the stack: there is no heap to put the largest in"
+)]
 enum Method<'a> {
     Fourier(Fourier),
     Search(Search),
