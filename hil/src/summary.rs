@@ -141,6 +141,7 @@ pub struct FirmwareFigures {
     pub flash_bytes: u32,
     /// Bytes of static RAM.
     pub ram_bytes: u32,
-    /// Deepest stack of this flight, bytes; none where it reached into static RAM.
+    /// Deepest stack of this flight, bytes; none where it reached into static RAM, and on a board, whose
+    /// stack nobody looks at.
     pub stack_peak_bytes: Option<u32>,
 }

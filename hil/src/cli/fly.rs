@@ -343,13 +343,15 @@ fn in_words(summary: &Summary) -> String {
         row("processor load", format!("{:.1} %", 100.0 * load));
     }
     if let Some(firmware) = &summary.firmware {
-        let stack = firmware
-            .stack_peak_bytes
-            .map_or("overflown".to_owned(), |bytes| format!("{bytes} B"));
+        let stack = match firmware.stack_peak_bytes {
+            Some(bytes) => format!("{bytes} B stack"),
+            None if summary.backend == "board" => "stack not measured".to_owned(),
+            None => "stack overflown".to_owned(),
+        };
         row(
             "firmware",
             format!(
-                "{} B flash, {} B static RAM, {stack} stack",
+                "{} B flash, {} B static RAM, {stack}",
                 firmware.flash_bytes, firmware.ram_bytes
             ),
         );

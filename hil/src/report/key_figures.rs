@@ -166,7 +166,7 @@ fn board_figures(summary: &Summary) -> [Option<Figure>; 4] {
             label: "Static RAM",
             value: kilobytes(image.ram_bytes),
             unit: "kB",
-            why: stack(image.stack_peak_bytes),
+            why: stack(image.stack_peak_bytes, summary.backend),
         }),
     ]
 }
@@ -175,9 +175,10 @@ fn known(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-fn stack(peak_bytes: Option<u32>) -> String {
+fn stack(peak_bytes: Option<u32>, backend: &str) -> String {
     match peak_bytes {
         Some(peak) => format!("and {} kB of stack at its peak", kilobytes(peak)),
+        None if backend == "board" => "and a stack that was not measured".into(),
         None => "the stack reached into it".into(),
     }
 }
