@@ -40,7 +40,7 @@ impl ImageDifference {
     /// The difference between the current view and a stored one that is already turned to fit.
     ///
     /// With J_k = (g_x,k, g_y,k, -ik t_k) and r_k = c_k - t_k: A_ij = 2 Σ w_k Re(conj(J_ki) J_kj),
-    /// b_i = 2 Σ w_k Re(conj(J_ki) r_k), c = Σ w_k |r_k|². In [`gradient`]'s d and s, g_x = ½ d and
+    /// b_i = 2 Σ w_k Re(conj(J_ki) r_k), c = Σ w_k |r_k|². In `gradient`'s d and s, g_x = ½ d and
     /// g_y = ½ is, so that Re(conj(g_x) z) = ½ Re(conj(d) z) and Re(conj(g_y) z) = ½ Im(conj(s) z).
     #[inline(never)]
     pub fn between(current: &Spectrum, stored: &StoredCoefficients, weights: &Weights) -> Self {
