@@ -17,10 +17,10 @@ fn endpoints_read_as_they_print() {
 #[test]
 fn what_is_no_endpoint_is_told_what_would_be_one() {
     for (text, told) in [
-        ("", "pty, tty:PATH and tcp:PORT"),
-        ("udp:5760", "pty, tty:PATH and tcp:PORT"),
-        ("pty:", "pty, tty:PATH and tcp:PORT"),
-        ("/dev/ttyUSB0", "pty, tty:PATH and tcp:PORT"),
+        ("", "pty, tty:PATH, tcp:PORT and none"),
+        ("udp:5760", "pty, tty:PATH, tcp:PORT and none"),
+        ("pty:", "pty, tty:PATH, tcp:PORT and none"),
+        ("/dev/ttyUSB0", "pty, tty:PATH, tcp:PORT and none"),
         ("tty:", "/dev/ttyUSB0"),
         ("tcp:", "1 to 65535"),
         ("tcp:0", "1 to 65535"),
