@@ -4,15 +4,29 @@ use std::fs;
 use std::process::Command;
 use std::sync::OnceLock;
 
+use emulator::soc::FlashAssumption;
+use hil::board::timing::TimingModel;
 use hil::calibrate_timing::{self, Comparison, EXAMPLE, NOTHING, Timing};
 use hil::image;
 
 fn timings() -> &'static [Timing] {
     static TIMINGS: OnceLock<Vec<Timing>> = OnceLock::new();
-    TIMINGS.get_or_init(|| {
+    TIMINGS.get_or_init(|| assuming(TimingModel::default()))
+}
+
+fn assuming(model: TimingModel) -> Vec<Timing> {
+    static ELF: OnceLock<Vec<u8>> = OnceLock::new();
+    let elf = ELF.get_or_init(|| {
         let elf = image::build_example(EXAMPLE, &|line| eprintln!("{line}"));
-        let elf = fs::read(elf.expect("the example builds")).expect("the image is there");
-        calibrate_timing::emulate(&elf).expect("kernels that end")
+        fs::read(elf.expect("the example builds")).expect("the image is there")
+    });
+    calibrate_timing::emulate(elf, model).expect("kernels that end")
+}
+
+fn with_flash(flash: FlashAssumption) -> Vec<Timing> {
+    assuming(TimingModel {
+        flash,
+        ..TimingModel::default()
     })
 }
 
@@ -57,6 +71,45 @@ fn prefetch_and_caches_never_make_a_kernel_slower() {
     for ((fast, slow), slowest) in accelerated.iter().zip(cached).zip(bare) {
         assert!(fast.then <= slow.then, "{fast} and {slow}");
         assert!(slow.then <= slowest.then, "{slow} and {slowest}");
+    }
+}
+
+#[test]
+fn no_wait_states_cost_less_than_five_and_more_than_five_cost_more() {
+    let all = |wait_states| {
+        with_flash(FlashAssumption {
+            wait_states: Some(wait_states),
+            ..FlashAssumption::default()
+        })
+    };
+    let (none, five, seven) = (all(0), all(5), all(7));
+    assert_eq!(five, timings());
+    let sum = |timings: &[Timing]| timings.iter().map(|timing| timing.then).sum::<u32>();
+    assert!(sum(&none) < sum(&five) && sum(&five) < sum(&seven));
+    for (none, five) in none.iter().zip(&five) {
+        assert!(none.then <= five.then, "{none} and {five}");
+    }
+}
+
+/// The image programs the bare flash in its last round; the assumption makes every round that one.
+#[test]
+fn a_flash_without_accelerator_is_the_bare_one_whatever_is_programmed() {
+    let assumed = with_flash(FlashAssumption {
+        without_accelerator: true,
+        ..FlashAssumption::default()
+    });
+    let of = |name: &str| -> Vec<(&str, u32)> {
+        let timings = assumed.iter().filter(|timing| timing.round == name);
+        timings
+            .map(|timing| (timing.kernel.as_str(), timing.then))
+            .collect()
+    };
+    let bare: Vec<(&str, u32)> = round("bare")
+        .into_iter()
+        .map(|timing| (timing.kernel.as_str(), timing.then))
+        .collect();
+    for name in ["accelerated", "cached", "bare"] {
+        assert_eq!(of(name), bare, "{name}");
     }
 }
 

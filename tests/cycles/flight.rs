@@ -3,13 +3,15 @@
 //!
 //! The table is printed with `cargo hil profile --route corner`.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::sync::OnceLock;
 
 use hil::board::emulated::Firmware;
+use hil::board::timing::TimingModel;
 use hil::flight;
 use hil::image;
-use hil::profile::{self, Profiled, Stage, Window};
+use hil::profile::{self, Profiled, Stage, Window, chrome};
 use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing};
 use hil::size::Size;
 use tests::Budgets;
@@ -43,7 +45,13 @@ const WINDOW: Window = Window {
 fn profiled() -> &'static Profiled {
     static PROFILED: OnceLock<Profiled> = OnceLock::new();
     PROFILED.get_or_init(|| {
-        let profiled = profile::fly(&corner(), elf(), Some(WINDOW), &mut |_| {});
+        let profiled = profile::fly(
+            &corner(),
+            elf(),
+            TimingModel::default(),
+            Some(WINDOW),
+            &mut |_| {},
+        );
         profiled.expect("a flight")
     })
 }
@@ -180,11 +188,43 @@ fn the_time_line_has_every_kind_of_track_and_nothing_on_a_track_overlaps_by_halv
             open.push(to);
         }
     }
-    let json: serde_json::Value =
-        serde_json::from_str(&timeline.to_json().expect("a text")).expect("JSON");
-    let events = json["traceEvents"].as_array().expect("events").len();
-    assert_eq!(
-        events,
-        timeline.slices().len() + 2 * timeline.tracks().len()
-    );
+}
+
+/// Trace Event Format (Chromium project): events in the order of their times; complete ones have a
+/// duration, instants a scope; each on a track that has a name.
+#[test]
+fn the_trace_keeps_to_chromes_format() {
+    let timeline = profiled().timeline.as_ref().expect("a time line");
+    let json = chrome::to_json(timeline).expect("a text");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let events = json["traceEvents"].as_array().expect("events");
+    let (metadata, others): (Vec<_>, Vec<_>) = events.iter().partition(|event| event["ph"] == "M");
+    let names = metadata
+        .iter()
+        .filter(|event| event["name"] == "thread_name");
+    let named: BTreeSet<u64> = names
+        .map(|event| event["tid"].as_u64().expect("a track"))
+        .collect();
+    assert_eq!(named.len(), timeline.tracks().len());
+    assert_eq!(others.len(), timeline.slices().len());
+    let mut latest = f64::NEG_INFINITY;
+    for event in others {
+        let ts = event["ts"].as_f64().expect("a time");
+        assert!(ts >= latest, "{event} after {latest}");
+        latest = ts;
+        match event["ph"].as_str() {
+            Some("X") => assert!(
+                event["dur"].as_f64().is_some_and(|dur| dur > 0.0),
+                "{event}"
+            ),
+            Some("i") => assert_eq!(event["s"], "t", "{event}"),
+            _ => panic!("{event}"),
+        }
+        assert!(
+            named.contains(&event["tid"].as_u64().expect("a track")),
+            "{event}"
+        );
+        assert_eq!(event["pid"], 1);
+        assert!(event["name"].as_str().is_some_and(|name| !name.is_empty()));
+    }
 }

@@ -12,7 +12,9 @@ pub use stepping::Step;
 use crate::core::{Call, Core, Cycle, CycleModel, Exit, Stop};
 use crate::image::{Image, ImageError};
 use crate::memory::Memory;
-use crate::soc::{DcmiCounters, FlashTiming, Lines, NEVER, ResetCause, Soc, UsartCounters};
+use crate::soc::{
+    DcmiCounters, FlashAssumption, FlashTiming, Lines, NEVER, ResetCause, Soc, UsartCounters,
+};
 use crate::time::Nanos;
 use crate::trace::Event;
 use crate::wiring::Wiring;
@@ -31,8 +33,8 @@ pub struct Machine<W> {
     lines: Lines,
     debug: DebugUnit,
     flash_timing: FlashTiming,
-    /// How fetches meet the flash, whatever the firmware programs.
-    assumed_flash: Option<FlashTiming>,
+    /// How fetches meet the flash, as far as it is not what the firmware programs.
+    assumed_flash: FlashAssumption,
 }
 
 impl<W: Wiring> Machine<W> {
@@ -53,7 +55,7 @@ impl<W: Wiring> Machine<W> {
             idle_cycles: 0,
             lines: Lines::default(),
             debug: DebugUnit::default(),
-            assumed_flash: None,
+            assumed_flash: FlashAssumption::default(),
         })
     }
 
@@ -99,18 +101,16 @@ impl<W: Wiring> Machine<W> {
         self.core.set_cycle_model(model);
     }
 
-    /// Assumes that fetches meet the flash like this, whatever the firmware programs; none undoes it.
-    /// It takes effect when the machine runs on.
-    pub fn assume_flash_timing(&mut self, timing: Option<FlashTiming>) {
-        self.assumed_flash = timing;
+    /// Assumes that fetches meet the flash like this, whatever the firmware programs; the default
+    /// assumes nothing. It takes effect when the machine runs on.
+    pub fn assume_flash(&mut self, assumption: FlashAssumption) {
+        self.assumed_flash = assumption;
     }
 
     /// Brings the chip to the core's present, and the core's inputs up to date.
     fn synchronise(&mut self) {
         self.soc.advance(&mut self.memory, self.core.cycles());
-        let timing = self
-            .assumed_flash
-            .unwrap_or_else(|| self.soc.flash_timing());
+        let timing = self.soc.flash_timing().assuming(self.assumed_flash);
         if timing != self.flash_timing {
             self.flash_timing = timing;
             self.core.set_flash_timing(

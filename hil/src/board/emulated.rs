@@ -16,6 +16,7 @@ use super::observer::{Interest, Observer};
 use super::probe::Probe;
 use super::rtt::UpChannel;
 use super::sabotage::Sabotaged;
+use super::timing::TimingModel;
 use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog};
 use crate::scenario::{CameraTrouble, LensPage};
 
@@ -35,13 +36,14 @@ const VISION_FUNCTION: &str = "vision_frame";
 /// The symbol of the lens record's page.
 const LENS_PAGE: &str = "_lens_page";
 
-/// What is in the chip's flash, an image and perhaps a lens record, and the image's log table; boards
-/// borrow it.
+/// What is in the chip's flash, an image and perhaps a lens record, the image's log table, and what is
+/// assumed of the chip's time; boards borrow it.
 #[derive(Debug)]
 pub struct Firmware {
     image: Image,
     table: LogTable,
     lens: Option<LensPage>,
+    timing: TimingModel,
 }
 
 impl Firmware {
@@ -51,6 +53,7 @@ impl Firmware {
             image: Image::parse(elf)?,
             table: LogTable::parse(elf)?,
             lens: None,
+            timing: TimingModel::default(),
         })
     }
 
@@ -58,6 +61,12 @@ impl Firmware {
     #[must_use]
     pub fn with_lens(self, lens: Option<LensPage>) -> Self {
         Self { lens, ..self }
+    }
+
+    /// The same on a chip of which other times are assumed.
+    #[must_use]
+    pub fn with_timing(self, timing: TimingModel) -> Self {
+        Self { timing, ..self }
     }
 
     /// Where the image looks for the lens record.
@@ -94,6 +103,8 @@ impl Firmware {
     /// A chip with all of it, on a board with this wiring, switched on.
     pub fn machine<W: Wiring>(&self, wiring: W) -> Result<Machine<W>, BoardError> {
         let mut machine = Machine::new(&self.image, CRYSTAL_HZ, wiring)?;
+        machine.set_cycle_model(self.timing.core);
+        machine.assume_flash(self.timing.flash);
         if let Some(lens) = &self.lens {
             let (address, bytes) = (self.lens_page_address()?, lens.bytes());
             let placed = machine.memory_mut().place(address, bytes);

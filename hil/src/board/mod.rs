@@ -12,6 +12,7 @@ pub mod probe;
 pub(crate) mod rtt;
 pub mod sabotage;
 pub mod serial_frames;
+pub mod timing;
 
 use fake_sensors::camera::Pose;
 

@@ -7,6 +7,7 @@ use emulator::time::Nanos;
 use emulator::wiring::Unwired;
 
 use crate::board::emulated::Firmware;
+use crate::board::timing::TimingModel;
 use crate::board::{BoardError, FirmwareLog};
 
 pub use comparison::{Comparison, Pair, Published};
@@ -50,8 +51,8 @@ pub enum CalibrationError {
 }
 
 /// Runs the kernels of the image on the emulated chip.
-pub fn emulate(elf: &[u8]) -> Result<Vec<Timing>, CalibrationError> {
-    let firmware = Firmware::parse(elf)?;
+pub fn emulate(elf: &[u8], model: TimingModel) -> Result<Vec<Timing>, CalibrationError> {
+    let firmware = Firmware::parse(elf)?.with_timing(model);
     let mut machine = firmware.machine(Unwired)?;
     let mut probe = firmware.probe()?;
     let (mut timings, mut log) = (Vec::new(), Vec::new());

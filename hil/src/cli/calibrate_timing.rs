@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::Failure;
 use super::console::Console;
+use super::timing::TimingArguments;
 use crate::calibrate_timing::{self, Comparison, EXAMPLE, NOTHING, Pair, Published};
 use crate::image;
 use crate::report::number::grouped;
@@ -15,6 +16,7 @@ use crate::report::number::grouped;
 #[command(after_help = "Examples:\n  \
     hil calibrate-timing                    cycles of each kernel on the emulated core\n  \
     hil calibrate-timing --board run.log    the ratio to a board's, kernel by kernel\n  \
+    hil calibrate-timing --wait-states 0    as if the flash kept up with the core\n  \
     hil calibrate-timing --json\n\n\
     The board's log: cargo run --profile flight --package firmware --target thumbv7em-none-eabihf --example kernels > run.log\n\
     Each kernel runs twice, with interrupts off; the second time counts. Rounds: accelerated, as in flight; cached, without\n\
@@ -27,6 +29,8 @@ pub struct Arguments {
     /// An image of the kernels that is already built [default: this checkout's, built first]
     #[arg(long, value_name = "ELF")]
     firmware: Option<PathBuf>,
+    #[command(flatten)]
+    timing: TimingArguments,
     /// Ends with one JSON object: kernels, worst_ratio, within
     #[arg(long)]
     json: bool,
@@ -40,7 +44,8 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     let read = |path: &PathBuf| {
         std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
     };
-    let timings = calibrate_timing::emulate(&read(&elf)?)
+    let model = arguments.timing.model();
+    let timings = calibrate_timing::emulate(&read(&elf)?, model)
         .map_err(|error| format!("{}: {error}", elf.display()))?;
     let comparison = match &arguments.board {
         None => Comparison::modelled(timings),
@@ -52,6 +57,7 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
         console.result(&serde_json::to_string(&comparison)?)?;
     } else {
         console.result(&in_words(&comparison))?;
+        console.result(&format!("assumed: {model}"))?;
     }
     Ok(comparison.within)
 }

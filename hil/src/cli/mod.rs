@@ -33,6 +33,7 @@ mod profile;
 mod rig;
 mod size;
 mod steps;
+mod timing;
 mod world;
 
 use std::process::ExitCode;

@@ -8,7 +8,11 @@ use clap::Args;
 use super::Failure;
 use super::console::Console;
 use super::fly::{Image, ScenarioArguments};
-use crate::profile::{self, Profile, Profiled, Quantiles, Stage, Window, flame};
+use super::timing::TimingArguments;
+use crate::board::timing::TimingModel;
+use crate::profile::{
+    self, Profile, Profiled, Quantiles, Stage, Window, chrome, flame, histograms, timing_diagram,
+};
 use crate::report::number::grouped;
 use crate::scenario::Scenario;
 
@@ -25,6 +29,9 @@ const MISSES_TOLD: usize = 10;
     hil profile --route corner --json              a short one, for scripts\n  \
     hil profile --trace flight.json                two seconds of it, to be opened in ui.perfetto.dev\n  \
     hil profile --trace all.json --window 0,600    all of it\n  \
+    hil profile --timeline period.svg              one frame period as a picture\n  \
+    hil profile --histograms stages.svg            every stage's cycles, frame by frame\n  \
+    hil profile --wait-states 0                    as if the flash kept up with the core\n  \
     hil profile --functions flame.svg              exact cycles by function, as a flame graph\n\n\
     Cycles are the emulated core's, read at the functions of the image: nothing is added to the firmware. Interrupts are\n\
     charged to themselves, a stage within another to itself. They are modelled: silicon may differ by 10 to 15 % on code\n\
@@ -40,11 +47,17 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
     /// The time line's piece of the flight: from a second on and, after a comma, for how many
-    #[arg(long, value_name = "SECOND[,SECONDS]", default_value = "60,2", value_parser = parse_window, requires = "trace")]
+    #[arg(long, value_name = "SECOND[,SECONDS]", default_value = "60,2", value_parser = parse_window)]
     window: Window,
+    /// Draws one frame period of that piece, the first in which most stages run
+    #[arg(long, value_name = "SVG")]
+    timeline: Option<PathBuf>,
+    /// Draws how often a frame took how many cycles, stage by stage
+    #[arg(long, value_name = "SVG")]
+    histograms: Option<PathBuf>,
     /// Draws cycles by function, inlined ones included, as a flame graph (.svg), or lists them in folded stacks; looks at
     /// every instruction, which takes ten times as long
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["trace", "json"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["trace", "timeline", "histograms", "json"])]
     functions: Option<PathBuf>,
     /// Ends with one JSON object: frames, stages, vision, pixel_to_vector_s, load, missed and more
     #[arg(long)]
@@ -52,6 +65,8 @@ pub struct Arguments {
     /// An image that is already built [default: this checkout's, built first]
     #[arg(long, value_name = "ELF")]
     firmware: Option<PathBuf>,
+    #[command(flatten)]
+    timing: TimingArguments,
 }
 
 fn parse_window(text: &str) -> Result<Window, String> {
@@ -70,21 +85,19 @@ fn parse_window(text: &str) -> Result<Window, String> {
 pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     let image = Image::get(arguments.firmware.clone(), console)?;
     let scenario = arguments.scenario.scenario(arguments.seed);
+    let timing = arguments.timing.model();
     if let Some(path) = &arguments.functions {
-        return by_function(&scenario, &image, path, console);
+        return by_function(&scenario, &image, timing, path, console);
     }
-    let window = arguments.trace.is_some().then_some(arguments.window);
+    let wanted = arguments.trace.is_some() || arguments.timeline.is_some();
+    let window = wanted.then_some(arguments.window);
     let mut bar = console.progress("Profiling", 1000);
-    let profiled = profile::fly(&scenario, &image.bytes, window, &mut |progress| {
+    let profiled = profile::fly(&scenario, &image.bytes, timing, window, &mut |progress| {
         bar.set((1000.0 * progress.fraction) as u64, || progress.to_string());
     });
     bar.finish();
     let profiled = profiled.map_err(|error| image.failure(error))?;
-    if let (Some(path), Some(timeline)) = (&arguments.trace, &profiled.timeline) {
-        fs::write(path, timeline.to_json()?)
-            .map_err(|error| format!("{}: {error}", path.display()))?;
-        console.status("Trace", &path.display().to_string());
-    }
+    write_pictures(arguments, &profiled, console)?;
     if arguments.json {
         console.result(&serde_json::to_string(&profiled.profile)?)?;
     } else {
@@ -93,14 +106,40 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     Ok(profiled.profile.missed == 0)
 }
 
+/// Those that were asked for.
+fn write_pictures(
+    arguments: &Arguments,
+    profiled: &Profiled,
+    console: &Console,
+) -> Result<(), Failure> {
+    let write = |what: &str, path: &Path, text: String| {
+        fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+        console.status(what, &path.display().to_string());
+        Ok::<(), Failure>(())
+    };
+    if let Some(timeline) = &profiled.timeline {
+        if let Some(path) = &arguments.trace {
+            write("Trace", path, chrome::to_json(timeline)?)?;
+        }
+        if let Some(path) = &arguments.timeline {
+            write("Timeline", path, timing_diagram::picture(timeline))?;
+        }
+    }
+    if let Some(path) = &arguments.histograms {
+        write("Histograms", path, histograms::picture(&profiled.frames))?;
+    }
+    Ok(())
+}
+
 fn by_function(
     scenario: &Scenario,
     image: &Image,
+    timing: TimingModel,
     path: &Path,
     console: &Console,
 ) -> Result<bool, Failure> {
     let mut bar = console.progress("Profiling", 1000);
-    let flown = profile::fly_by_function(scenario, &image.bytes, &mut |progress| {
+    let flown = profile::fly_by_function(scenario, &image.bytes, timing, &mut |progress| {
         bar.set((1000.0 * progress.fraction) as u64, || progress.to_string());
     });
     bar.finish();
@@ -154,7 +193,7 @@ fn in_words(profiled: &Profiled) -> String {
     for miss in profile.misses.iter().take(MISSES_TOLD) {
         lines.push(format!("  at {:.3} s: {}", miss.at_s, miss.running));
     }
-    let model = profile.model;
+    let model = &profile.model;
     lines.push(format!("{} (error: {})", model.source, model.error));
     lines.push(format!("assumed: {}", model.assumptions));
     lines.join("\n")

@@ -9,6 +9,7 @@ use super::frames::{FrameProfile, Frames, Miss};
 use super::ledger::{Books, Spent};
 use super::stage::Stage;
 use super::symbols::Symbols;
+use crate::board::timing::TimingModel;
 use crate::metrics::quantile;
 
 /// Quantiles.
@@ -63,24 +64,25 @@ pub struct Load {
 }
 
 /// What must be known of modelled figures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Model {
     /// Where the cycles come from.
     pub source: &'static str,
     /// What is assumed.
-    pub assumptions: &'static str,
+    pub assumptions: String,
     /// How far silicon may be from it.
     pub error: &'static str,
 }
 
 impl Model {
-    /// The emulator's.
-    pub const EMULATED: Self = Self {
-        source: "modelled by the emulator, not measured on silicon",
-        assumptions: "Cortex-M4 manual (DDI0439 3.3), branch refill of 2, flash accelerator of RM0090 3.4.2 with 5 wait \
-                      states, bridges of 2 bus clocks; DMA never keeps the core waiting",
-        error: "10 to 15 % on code that computes, 25 % on drivers",
-    };
+    /// The emulator's, under these assumptions.
+    pub fn emulated(timing: TimingModel) -> Self {
+        Self {
+            source: "modelled by the emulator, not measured on silicon",
+            assumptions: timing.to_string(),
+            error: "10 to 15 % on code that computes, 25 % on drivers",
+        }
+    }
 }
 
 /// A flight's profile.
@@ -127,6 +129,7 @@ impl Profile {
         books: &Books,
         symbols: &Symbols,
         core_hz: u32,
+        timing: TimingModel,
     ) -> Self {
         let all = books.all.max(1) as f64;
         let share = |cycles: Cycle| cycles as f64 / all;
@@ -160,7 +163,7 @@ impl Profile {
             wakeups_per_s: per_s(books.wakeups),
             missed: misses.len(),
             misses,
-            model: Model::EMULATED,
+            model: Model::emulated(timing),
         }
     }
 }

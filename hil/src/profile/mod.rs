@@ -1,10 +1,12 @@
 //! Where the cycles of a flight go: from outside, by the emulated core's counter at the functions of
 //! the image. Nothing is added to the firmware, and its flight is the same to the byte.
 
+pub mod chrome;
 mod figures;
 pub mod flame;
 mod frames;
 mod functions;
+pub mod histograms;
 mod inlined;
 mod ledger;
 mod profiler;
@@ -12,9 +14,11 @@ mod stacks;
 mod stage;
 mod symbols;
 mod timeline;
+pub mod timing_diagram;
 mod wires;
 
 use crate::board::emulated::Firmware;
+use crate::board::timing::TimingModel;
 use crate::flight::{self, FlightError, Flown, Progress};
 use crate::scenario::Scenario;
 
@@ -36,7 +40,7 @@ pub struct Profiled {
     pub profile: Profile,
     /// Frame by frame.
     pub frames: Vec<FrameProfile>,
-    /// The time line of the window that was asked for, in Chrome's trace format.
+    /// The time line of the window that was asked for.
     pub timeline: Option<Timeline>,
 }
 
@@ -44,11 +48,12 @@ pub struct Profiled {
 pub fn fly(
     scenario: &Scenario,
     elf: &[u8],
+    timing: TimingModel,
     window: Option<Window>,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Profiled, FlightError> {
-    let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
-    let mut profiler = Profiler::new(window);
+    let firmware = firmware(scenario, elf, timing)?;
+    let mut profiler = Profiler::new(timing, window);
     let flown = flight::fly_watched(scenario, &firmware, &mut profiler, progress)?;
     let (profile, frames, timeline) = profiler.finish();
     Ok(Profiled {
@@ -63,10 +68,16 @@ pub fn fly(
 pub fn fly_by_function(
     scenario: &Scenario,
     elf: &[u8],
+    timing: TimingModel,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(Flown, Stacks), FlightError> {
-    let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
+    let firmware = firmware(scenario, elf, timing)?;
     let mut profiler = FunctionProfiler::default();
     let flown = flight::fly_watched(scenario, &firmware, &mut profiler, progress)?;
     Ok((flown, profiler.finish(elf)?))
+}
+
+fn firmware(scenario: &Scenario, elf: &[u8], timing: TimingModel) -> Result<Firmware, FlightError> {
+    let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
+    Ok(firmware.with_timing(timing))
 }

@@ -12,11 +12,13 @@ use super::wires::Wires;
 use crate::board::BoardError;
 use crate::board::emulated::{Emulated, LINK_USART};
 use crate::board::observer::{Interest, Observer};
+use crate::board::timing::TimingModel;
 
 /// The observer of a flight.
 #[derive(Debug)]
 pub struct Profiler {
     symbols: Symbols,
+    timing: TimingModel,
     core_hz: u32,
     /// The cycle of the flight's time zero.
     zero: Cycle,
@@ -29,10 +31,12 @@ pub struct Profiler {
 }
 
 impl Profiler {
-    /// A profiler that draws up the time line of a window, should there be one.
-    pub fn new(window: Option<Window>) -> Self {
+    /// A profiler of a flight under these assumptions that draws up the time line of a window, should
+    /// there be one.
+    pub fn new(timing: TimingModel, window: Option<Window>) -> Self {
         Self {
             symbols: Symbols::default(),
+            timing,
             core_hz: 1,
             zero: 0,
             ledger: Ledger::default(),
@@ -53,6 +57,7 @@ impl Profiler {
             books,
             &self.symbols,
             self.core_hz,
+            self.timing,
         );
         (profile, self.frames.seen, self.timeline)
     }

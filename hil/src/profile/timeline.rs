@@ -1,11 +1,9 @@
-//! Tasks, interrupts, DMA, link and frames on one time line, in Chrome's trace-event format, which
-//! Perfetto (ui.perfetto.dev) opens.
+//! Tasks, interrupts, DMA, link and frames on one time line.
 
 use std::collections::BTreeMap;
 
 use emulator::core::Cycle;
 use emulator::trace::{Event, SerialWire, What};
-use serde::Serialize;
 
 use super::symbols::{Function, Symbols};
 use super::wires::Heard;
@@ -175,40 +173,6 @@ impl Timeline {
         let name = || name_of(track, symbols);
         self.tracks.entry(track).or_insert_with(name);
     }
-
-    /// In Chrome's trace-event format: complete events, instants, and the tracks' names and order.
-    pub fn to_json(&self) -> serde_json::Result<String> {
-        let numbers: BTreeMap<Track, usize> = self.tracks.keys().copied().zip(1..).collect();
-        let mut events = Vec::new();
-        for (track, name) in &self.tracks {
-            let tid = numbers[track];
-            events.push(TraceEvent::metadata(
-                "thread_name",
-                tid,
-                Arguments::name(name),
-            ));
-            events.push(TraceEvent::metadata(
-                "thread_sort_index",
-                tid,
-                Arguments::index(tid),
-            ));
-        }
-        events.extend(self.slices.iter().map(|slice| {
-            let instant = slice.for_us == 0.0;
-            TraceEvent {
-                ph: if instant { "i" } else { "X" },
-                name: &slice.name,
-                ts: slice.from_us,
-                dur: (!instant).then_some(slice.for_us),
-                s: instant.then_some("t"),
-                ..TraceEvent::on(numbers[&slice.track])
-            }
-        }));
-        serde_json::to_string(&Document {
-            trace_events: events,
-            display_time_unit: "ns",
-        })
-    }
 }
 
 fn track_of(function: Function) -> Track {
@@ -228,65 +192,5 @@ fn name_of(track: Track, symbols: &Symbols) -> String {
         Track::Received => "link, from autopilot".to_owned(),
         Track::Sent => "link, to autopilot".to_owned(),
         Track::Sleep => "core".to_owned(),
-    }
-}
-
-/// Chrome's format, as far as it is used.
-#[derive(Serialize)]
-struct Document<'t> {
-    #[serde(rename = "traceEvents")]
-    trace_events: Vec<TraceEvent<'t>>,
-    #[serde(rename = "displayTimeUnit")]
-    display_time_unit: &'static str,
-}
-
-#[derive(Default, Serialize)]
-struct TraceEvent<'t> {
-    ph: &'static str,
-    name: &'t str,
-    pid: usize,
-    tid: usize,
-    ts: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    dur: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    s: Option<&'static str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    args: Option<Arguments<'t>>,
-}
-
-impl<'t> TraceEvent<'t> {
-    fn on(tid: usize) -> Self {
-        Self {
-            pid: 1,
-            tid,
-            ..Self::default()
-        }
-    }
-
-    fn metadata(name: &'static str, tid: usize, args: Arguments<'t>) -> Self {
-        Self {
-            ph: "M",
-            name,
-            args: Some(args),
-            ..Self::on(tid)
-        }
-    }
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Arguments<'t> {
-    Name { name: &'t str },
-    Index { sort_index: usize },
-}
-
-impl<'t> Arguments<'t> {
-    fn name(name: &'t str) -> Self {
-        Self::Name { name }
-    }
-
-    fn index(sort_index: usize) -> Self {
-        Self::Index { sort_index }
     }
 }

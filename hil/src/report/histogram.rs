@@ -43,22 +43,60 @@ impl Scales {
     }
 }
 
+/// User units of a histogram: width and height.
+pub const SIZE: [f64; 2] = [WIDTH, TOP + HEIGHT + BOTTOM];
+
+/// What a histogram says of itself.
+#[derive(Clone, Copy, Debug)]
+pub struct Words<'w> {
+    /// Above it.
+    pub title: &'w str,
+    /// At the axis of cycles.
+    pub axis: &'w str,
+    /// In its place, where there are no frames.
+    pub nothing: &'w str,
+}
+
+/// Values of the lines that are drawn across a histogram, cycles.
+#[derive(Clone, Copy, Debug)]
+pub struct Lines {
+    /// Median.
+    pub p50: u32,
+    /// 99th percentile.
+    pub p99: u32,
+    /// Largest.
+    pub max: u32,
+}
+
 /// The histogram of all frames, with the quantiles of the summary.
 pub fn render(cycles: &[u32], quantiles: Option<CyclesPerFrame>) -> Markup {
-    let range = Range::of(cycles.iter().map(|cycles| f64::from(*cycles)));
-    let view_box = format!("0 0 {} {}", px(WIDTH), px(TOP + HEIGHT + BOTTOM));
+    let view_box = format!("0 0 {} {}", px(SIZE[0]), px(SIZE[1]));
+    let lines = quantiles.map(|CyclesPerFrame { p50, p99, max, .. }| Lines { p50, p99, max });
+    let words = Words {
+        title: "Histogram of cycles per frame",
+        axis: "cycles from frame to spectrum",
+        nothing: "No processor was emulated.",
+    };
     html! {
-        svg viewBox=(view_box) role="img" aria-label="Histogram of cycles per frame" {
-            text class="f-ink strong" x="0" y="16" { "Histogram of cycles per frame" }
-            @match range {
-                Some(range) => (body(cycles, range, quantiles)),
-                None => text class="f-soft" x=(px(LEFT)) y="44" { "No processor was emulated." },
-            }
+        svg viewBox=(view_box) role="img" aria-label=(words.title) {
+            (panel(words, cycles, lines))
         }
     }
 }
 
-fn body(cycles: &[u32], range: Range, quantiles: Option<CyclesPerFrame>) -> Markup {
+/// A histogram of cycles, one value a frame, at the origin.
+pub fn panel(words: Words, cycles: &[u32], lines: Option<Lines>) -> Markup {
+    let range = Range::of(cycles.iter().map(|cycles| f64::from(*cycles)));
+    html! {
+        text class="f-ink strong" x="0" y="16" { (words.title) }
+        @match range {
+            Some(range) => (body(words, cycles, range, lines)),
+            None => text class="f-soft" x=(px(LEFT)) y="44" { (words.nothing) },
+        }
+    }
+}
+
+fn body(words: Words, cycles: &[u32], range: Range, lines: Option<Lines>) -> Markup {
     let step = ticks::nice_step(range.span(), MOST_BINS);
     let x = range.rounded(step);
     let counts = bins(cycles, x, step);
@@ -76,8 +114,8 @@ fn body(cycles: &[u32], range: Range, quantiles: Option<CyclesPerFrame>) -> Mark
     html! {
         (count_axis(&scales))
         path class="f-homing" d=(bars) {}
-        (cycle_axis(&scales))
-        @if let Some(quantiles) = quantiles { (quantile_lines(&scales, quantiles)) }
+        (cycle_axis(&scales, words.axis))
+        @if let Some(lines) = lines { (quantile_lines(&scales, lines)) }
     }
 }
 
@@ -120,7 +158,7 @@ fn count_axis(scales: &Scales) -> Markup {
     }
 }
 
-fn cycle_axis(scales: &Scales) -> Markup {
+fn cycle_axis(scales: &Scales, name: &str) -> Markup {
     let (values, _) = ticks::ticks(scales.x, 9);
     let bottom = TOP + HEIGHT;
     html! {
@@ -131,17 +169,13 @@ fn cycle_axis(scales: &Scales) -> Markup {
                 (number::grouped(value as u64))
             }
         }
-        text class="f-muted small end" x=(px(WIDTH - RIGHT)) y=(px(bottom + 37.0)) { "cycles from frame to spectrum" }
+        text class="f-muted small end" x=(px(WIDTH - RIGHT)) y=(px(bottom + 37.0)) { (name) }
     }
 }
 
 /// Each quantile has a row of its own for its label, so that labels never meet.
-fn quantile_lines(scales: &Scales, quantiles: CyclesPerFrame) -> Markup {
-    let rows = [
-        ("p50", quantiles.p50),
-        ("p99", quantiles.p99),
-        ("max", quantiles.max),
-    ];
+fn quantile_lines(scales: &Scales, lines: Lines) -> Markup {
+    let rows = [("p50", lines.p50), ("p99", lines.p99), ("max", lines.max)];
     html! {
         @for (row, (name, cycles)) in rows.into_iter().enumerate() {
             @let x = scales.x(f64::from(cycles)).clamp(LEFT, WIDTH - RIGHT);

@@ -9,7 +9,7 @@ mod charts;
 mod conditions;
 mod errors;
 mod figures;
-mod histogram;
+pub(crate) mod histogram;
 pub(crate) mod horizon;
 mod key_figures;
 mod link;

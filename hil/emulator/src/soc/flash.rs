@@ -31,6 +31,29 @@ pub struct FlashTiming {
     pub data_cache: bool,
 }
 
+/// What is assumed of the flash in place of what the firmware programs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FlashAssumption {
+    /// Wait states.
+    pub wait_states: Option<u8>,
+    /// Prefetch and both caches are off.
+    pub without_accelerator: bool,
+}
+
+impl FlashTiming {
+    /// What the firmware programs, as far as nothing else is assumed.
+    #[must_use]
+    pub fn assuming(self, assumption: FlashAssumption) -> Self {
+        let accelerated = !assumption.without_accelerator;
+        Self {
+            wait_states: assumption.wait_states.unwrap_or(self.wait_states),
+            prefetch: self.prefetch && accelerated,
+            instruction_cache: self.instruction_cache && accelerated,
+            data_cache: self.data_cache && accelerated,
+        }
+    }
+}
+
 /// The flash interface.
 #[derive(Clone, Debug, Default)]
 pub struct Flash {

@@ -29,7 +29,7 @@ mod watchdog;
 
 pub use clocks::ResetCause;
 pub use dcmi::DcmiCounters;
-pub use flash::FlashTiming;
+pub use flash::{FlashAssumption, FlashTiming};
 pub use interrupts::Lines;
 pub use map::Block;
 pub use refusal::Refusal;
