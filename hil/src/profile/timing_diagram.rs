@@ -311,14 +311,14 @@ mod tests {
         let mut slices: Vec<Slice> = frames
             .map(|start| slice(Track::Camera, "frame", start, 30_000.0))
             .into();
-        for (name, at) in [
-            ("unwrap", 33_000.0),
-            ("unwrap", 72_000.0),
-            ("align", 73_000.0),
-            ("unwrap", 111_000.0),
-            ("align", 112_000.0),
+        for (name, at, long) in [
+            ("unwrap", 33_000.0, 100.0),
+            ("unwrap", 72_000.0, 100.0),
+            ("align", 73_000.0, 20.0),
+            ("unwrap", 111_000.0, 100.0),
+            ("align", 112_000.0, 20.0),
         ] {
-            slices.push(slice(Track::Stages, name, at, 100.0));
+            slices.push(slice(Track::Stages, name, at, long));
         }
         let period = busiest_period(&slices);
         assert_eq!((period.low, period.high), (39_000.0, 78_000.0));
