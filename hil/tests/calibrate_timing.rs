@@ -86,7 +86,10 @@ fn no_wait_states_cost_less_than_five_and_more_than_five_cost_more() {
     assert_eq!(five, timings());
     let sum = |timings: &[Timing]| timings.iter().map(|timing| timing.then).sum::<u32>();
     assert!(sum(&none) < sum(&five) && sum(&five) < sum(&seven));
-    for (none, five) in none.iter().zip(&five) {
+    // A read of a slow bus waits for the bus's clock: what goes before shifts it by less than a period.
+    let waits = |timing: &&Timing| timing.kernel.starts_with("read of a register on APB");
+    let computes = |timings: Vec<Timing>| timings.into_iter().filter(|timing| !waits(&timing));
+    for (none, five) in computes(none).zip(computes(five)) {
         assert!(none.then <= five.then, "{none} and {five}");
     }
 }
