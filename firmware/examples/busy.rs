@@ -5,11 +5,12 @@
 #![no_std]
 #![no_main]
 
+#[path = "common/flight_flash.rs"]
+mod flight_flash;
+
 use core::hint::black_box;
 
 use defmt_rtt as _;
-use embassy_stm32::pac;
-use embassy_stm32::pac::flash::vals::Latency;
 use panic_probe as _;
 
 /// Rows and columns of the matrices: the Kalman filter's.
@@ -21,13 +22,7 @@ type Matrix = [[f32; ORDER]; ORDER];
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    // As at 168 MHz and 3.3 V (RM0090 table 10); the core's own clock does not change its cycles.
-    pac::FLASH.acr().modify(|acr| {
-        acr.set_latency(Latency::WS5);
-        acr.set_icen(true);
-        acr.set_dcen(true);
-        acr.set_prften(true);
-    });
+    flight_flash::set_up();
     let mut hash = 0xcbf2_9ce4_8422_2325;
     let mut covariance: Matrix =
         core::array::from_fn(|row| core::array::from_fn(|column| f32::from(row == column)));

@@ -8,12 +8,13 @@
 #![no_std]
 #![no_main]
 
+#[path = "common/flight_flash.rs"]
+mod flight_flash;
+
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::asm;
 use defmt_rtt as _;
-use embassy_stm32::pac;
-use embassy_stm32::pac::flash::vals::Latency;
 use nav::NoVectorReason;
 use nav::horizon::BEARINGS;
 use nav::methods::{
@@ -81,13 +82,7 @@ impl<'a> Method<'a> {
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    // As at 168 MHz and 3.3 V (RM0090 table 10); the core's own clock does not change its cycles.
-    pac::FLASH.acr().modify(|acr| {
-        acr.set_latency(Latency::WS5);
-        acr.set_icen(true);
-        acr.set_dcen(true);
-        acr.set_prften(true);
-    });
+    flight_flash::set_up();
     let warps = WARPS.init_with(|| WarpSearch::new(presets::default(16, 0)));
     loop {
         let wanted = METHOD.load(Ordering::Acquire);

@@ -7,13 +7,14 @@
 #![no_std]
 #![no_main]
 
+#[path = "common/flight_flash.rs"]
+mod flight_flash;
+
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
 use cortex_m::asm;
 use defmt_rtt as _;
-use embassy_stm32::pac;
-use embassy_stm32::pac::flash::vals::Latency;
 use link::{Event, Parser};
 use panic_probe as _;
 
@@ -42,13 +43,7 @@ static REFUSED: AtomicU32 = AtomicU32::new(0);
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    // As at 168 MHz and 3.3 V (RM0090 table 10); the core's own clock does not change its cycles.
-    pac::FLASH.acr().modify(|acr| {
-        acr.set_latency(Latency::WS5);
-        acr.set_icen(true);
-        acr.set_dcen(true);
-        acr.set_prften(true);
-    });
+    flight_flash::set_up();
     let mut bytes = [0; CAPACITY];
     loop {
         let length = STREAM_BYTES.load(Ordering::Acquire) as usize;

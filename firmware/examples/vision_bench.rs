@@ -8,13 +8,14 @@
 #![no_std]
 #![no_main]
 
+#[path = "common/flight_flash.rs"]
+mod flight_flash;
+
 use core::hint::black_box;
 use core::sync::atomic::{AtomicI8, AtomicU8, AtomicU32, Ordering};
 
 use cortex_m::asm;
 use defmt_rtt as _;
-use embassy_stm32::pac;
-use embassy_stm32::pac::flash::vals::Latency;
 use nav::homing::{self, FLAT_WEIGHTS, ImageDifference};
 use nav::snapshot::SNAPSHOT_BYTES;
 use nav::spectrum::StoredCoefficients;
@@ -48,13 +49,7 @@ static RESULT: [AtomicU32; 23] = [const { AtomicU32::new(0) }; 23];
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    // As at 168 MHz and 3.3 V (RM0090 table 10); the core's own clock does not change its cycles.
-    pac::FLASH.acr().modify(|acr| {
-        acr.set_latency(Latency::WS5);
-        acr.set_icen(true);
-        acr.set_dcen(true);
-        acr.set_prften(true);
-    });
+    flight_flash::set_up();
     // In SRAM, as in flight.
     static BYTES: StaticCell<Frame> = StaticCell::new();
     static MAP: StaticCell<PanoramaMap> = StaticCell::new();
