@@ -1,20 +1,15 @@
-//! The time line as a picture: one frame period in whole, and what vision does with the frame
-//! under the magnifying glass.
+//! A stretch of a time line, its tracks one below the other.
 
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
-use super::timeline::{Slice, Timeline, Track};
-use crate::report::style;
+use super::super::timeline::{Slice, Timeline, Track};
+use super::WIDTH;
 use crate::report::svg::px;
 use crate::report::ticks::{self, Range};
 
-/// User units of the whole picture.
-const WIDTH: f64 = 1200.0;
 /// Room for the names of the tracks.
 const LEFT: f64 = 170.0;
 const RIGHT: f64 = 18.0;
-/// Room for the title.
-const TITLE: f64 = 52.0;
 /// Room for a panel's heading, and for its axis.
 const HEADING: f64 = 22.0;
 const AXIS: f64 = 40.0;
@@ -27,81 +22,8 @@ const NAMED: f64 = 2.0;
 /// Width of a character of the labels, on average.
 const CHARACTER: f64 = 5.4;
 
-/// One frame period of a time line as a stand-alone SVG: of all in the window, the first in which
-/// most stages run.
-pub fn picture(timeline: &Timeline) -> String {
-    let period = busiest_period(timeline.slices());
-    let whole = Panel::new(timeline, period, "One frame period, ms");
-    let close = looks(timeline.slices(), period).map(|span| {
-        Panel::new(
-            timeline,
-            span,
-            "The same, where vision looks at the frame, ms",
-        )
-    });
-    let below = TITLE + whole.height();
-    let height = below + close.as_ref().map_or(0.0, Panel::height);
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {}", px(WIDTH), px(height)))
-            role="img" aria-label="Timing diagram of a frame period" {
-            style { (PreEscaped(style::figure())) }
-            rect class="f-paper" width=(px(WIDTH)) height=(px(height)) {}
-            text class="f-ink title" x="16" y="24" { "Tasks, interrupts, DMA and link in one frame period" }
-            text class="f-muted subtitle" x="16" y="43" {
-                (format!("from {:.6} s of the flight on; by the emulated core's cycle counter", 1.0e-6 * period.low))
-            }
-            (whole.draw(TITLE))
-            @if let Some(close) = close { (close.draw(below)) }
-        }
-    }
-    .into_string()
-}
-
-/// From the start of a frame to that of the next, microseconds of the flight; everything, where there
-/// are not two frames.
-fn busiest_period(slices: &[Slice]) -> Range {
-    let of = |track| slices.iter().filter(move |slice| slice.track == track);
-    let mut starts: Vec<f64> = of(Track::Camera).map(|frame| frame.from_us).collect();
-    starts.sort_by(f64::total_cmp);
-    let periods = starts.windows(2).map(|ends| Range {
-        low: ends[0],
-        high: ends[1],
-    });
-    let stages = |period: &Range| {
-        let stages = of(Track::Stages).filter(|stage| period.contains(stage.from_us));
-        let mut names: Vec<&str> = stages.map(|stage| stage.name.as_str()).collect();
-        names.sort_unstable();
-        names.dedup();
-        names.len()
-    };
-    // Of equals, `max_by_key` takes the last.
-    let busiest = periods.rev().max_by_key(stages);
-    let ends = |slice: &Slice| [slice.from_us, slice.from_us + slice.for_us];
-    busiest
-        .or_else(|| Range::of(slices.iter().flat_map(ends)))
-        .unwrap_or(Range {
-            low: 0.0,
-            high: 1.0,
-        })
-}
-
-/// The longest stage of a period with some room about it: the look at the frame.
-fn looks(slices: &[Slice], period: Range) -> Option<Range> {
-    /// Of its length, on either side.
-    const ROOM: f64 = 0.3;
-    let stages = slices
-        .iter()
-        .filter(|slice| slice.track == Track::Stages && period.contains(slice.from_us));
-    let look = stages.max_by(|a, b| a.for_us.total_cmp(&b.for_us))?;
-    let room = ROOM * look.for_us;
-    (room > 0.0).then_some(Range {
-        low: look.from_us - room,
-        high: look.from_us + look.for_us + room,
-    })
-}
-
 /// A stretch of time, its tracks one below the other.
-struct Panel<'t> {
+pub(super) struct Panel<'t> {
     heading: &'static str,
     /// Microseconds of the flight.
     span: Range,
@@ -118,7 +40,7 @@ struct Row<'t> {
 
 impl<'t> Panel<'t> {
     /// The tracks that have something in the span.
-    fn new(timeline: &'t Timeline, span: Range, heading: &'static str) -> Self {
+    pub(super) fn new(timeline: &'t Timeline, span: Range, heading: &'static str) -> Self {
         let rows = timeline.tracks().iter().map(|(track, name)| {
             let here = timeline.slices().iter().filter(|slice| {
                 slice.track == *track
@@ -141,7 +63,7 @@ impl<'t> Panel<'t> {
         }
     }
 
-    fn height(&self) -> f64 {
+    pub(super) fn height(&self) -> f64 {
         let rows = self.tracks.iter();
         HEADING + rows.map(Row::height).sum::<f64>() + AXIS
     }
@@ -151,7 +73,8 @@ impl<'t> Panel<'t> {
         LEFT + share.clamp(0.0, 1.0) * (WIDTH - LEFT - RIGHT)
     }
 
-    fn draw(&self, top: f64) -> Markup {
+    /// Its top at `top`.
+    pub(super) fn draw(&self, top: f64) -> Markup {
         let mut y = top + HEADING;
         let rows = self.tracks.iter().map(|row| {
             let at = y;
@@ -274,16 +197,8 @@ fn label_of(track: Track) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use super::super::slice;
     use super::*;
-
-    fn slice(track: Track, name: &str, from_us: f64, for_us: f64) -> Slice {
-        Slice {
-            track,
-            name: name.to_owned(),
-            from_us,
-            for_us,
-        }
-    }
 
     #[test]
     fn a_stage_within_another_is_a_row_lower_and_the_next_one_is_not() {
@@ -303,27 +218,5 @@ mod tests {
             (0, "navigate"),
         ];
         assert_eq!(depths, expected);
-    }
-
-    #[test]
-    fn the_first_of_the_periods_with_most_stages_is_shown() {
-        let frames = [0.0, 39_000.0, 78_000.0, 117_000.0];
-        let mut slices: Vec<Slice> = frames
-            .map(|start| slice(Track::Camera, "frame", start, 30_000.0))
-            .into();
-        for (name, at, long) in [
-            ("unwrap", 33_000.0, 100.0),
-            ("unwrap", 72_000.0, 100.0),
-            ("align", 73_000.0, 20.0),
-            ("unwrap", 111_000.0, 100.0),
-            ("align", 112_000.0, 20.0),
-        ] {
-            slices.push(slice(Track::Stages, name, at, long));
-        }
-        let period = busiest_period(&slices);
-        assert_eq!((period.low, period.high), (39_000.0, 78_000.0));
-        let close = looks(&slices, period).expect("a stage");
-        assert!(close.contains(72_000.0) && close.contains(72_100.0));
-        assert!(close.span() < 200.0);
     }
 }
