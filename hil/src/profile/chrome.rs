@@ -7,12 +7,17 @@ use serde::Serialize;
 
 use super::timeline::{Slice, Timeline, Track};
 
+/// The one process: the board. No track has this number: a viewer would take it for the main thread.
+const BOARD: usize = 1;
+
 /// Complete events and instants in the order of their beginnings, the outer before the inner, after
 /// the tracks' names and places.
 pub fn to_json(timeline: &Timeline) -> serde_json::Result<String> {
     let tracks = timeline.tracks();
-    let numbers: BTreeMap<Track, usize> = tracks.keys().copied().zip(1..).collect();
-    let mut events = Vec::new();
+    let numbers: BTreeMap<Track, usize> = tracks.keys().copied().zip(BOARD + 1..).collect();
+    let name = "STM32F407, emulated";
+    let board = TraceEvent::metadata("process_name", BOARD, Arguments::Name { name });
+    let mut events = vec![board];
     for (track, name) in tracks {
         let tid = numbers[track];
         events.push(TraceEvent::metadata(
@@ -62,7 +67,7 @@ struct TraceEvent<'t> {
 impl<'t> TraceEvent<'t> {
     fn on(tid: usize) -> Self {
         Self {
-            pid: 1,
+            pid: BOARD,
             tid,
             ..Self::default()
         }
