@@ -3,5 +3,6 @@
 pub mod camera;
 pub mod motion;
 pub mod random;
+mod vectors;
 pub mod wind;
 pub mod world;

@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 
 use super::lens::PanoramicLens;
 use super::{HEIGHT, WIDTH};
-use crate::world::{Aperture, FAN, World};
+use crate::vectors::{self, Kernel};
+use crate::world::{Aperture, Directions, FAN, Viewpoint, World};
 
 /// The optic images this far beyond the ring's nominal edges, in pixels: users calibrate inside.
 const RING_MARGIN_PX: f32 = 1.5;
@@ -37,12 +38,14 @@ pub struct Pose {
     pub attitude: UnitQuaternion<f32>,
 }
 
-/// A pixel's direction in the body frame.
-#[derive(Clone, Copy, Debug)]
-struct PixelRay {
-    index: usize,
-    direction: Vector3<f32>,
-    aperture: Aperture,
+/// Pixels of a row that are rendered together.
+#[derive(Clone, Debug)]
+struct PixelFan {
+    /// The pixels.
+    indices: Vec<usize>,
+    /// Their directions in the body frame; the last fills the fan up.
+    directions: Directions,
+    apertures: [Aperture; FAN],
 }
 
 /// Renders the annulus of a panoramic lens.
@@ -56,10 +59,8 @@ struct PixelRay {
 /// are there.
 #[derive(Clone, Debug)]
 pub struct AnnulusRenderer {
-    /// Row by row.
-    rays: Vec<PixelRay>,
-    /// The first ray of each row, and the number of rays.
-    row_starts: Vec<usize>,
+    /// Of each row.
+    fans: Vec<Vec<PixelFan>>,
     sharp: Vec<f32>,
     /// Blurred along the rows.
     streaked: Vec<f32>,
@@ -73,13 +74,12 @@ impl AnnulusRenderer {
     pub fn new(lens: &PanoramicLens) -> Self {
         let inner = lens.inner_radius_px - RING_MARGIN_PX;
         let outer = lens.outer_radius_px + RING_MARGIN_PX;
-        let mut rays: Vec<PixelRay> = Vec::new();
+        let mut in_ring: Vec<Vec<usize>> = vec![Vec::new(); HEIGHT];
         let mut sharp = vec![0.0; WIDTH * HEIGHT];
         for (index, pixel) in sharp.iter_mut().enumerate() {
-            let centre = pixel_centre(index);
-            let radius = lens.distance_from_centre(centre);
+            let radius = lens.distance_from_centre(pixel_centre(index));
             if (inner..=outer).contains(&radius) {
-                rays.push(PixelRay::new(lens, index, radius));
+                in_ring[index / WIDTH].push(index);
             } else if radius < inner {
                 *pixel = CENTRE_RADIANCE;
             } else if radius < outer + RIM_WIDTH_PX {
@@ -88,10 +88,12 @@ impl AnnulusRenderer {
                 *pixel = HOLDER_RADIANCE;
             }
         }
-        let row_start = |row| rays.partition_point(|ray| ray.index < row * WIDTH);
+        let fans_of = |row: &Vec<usize>| {
+            let fans = row.chunks(FAN);
+            fans.map(|pixels| PixelFan::new(lens, pixels)).collect()
+        };
         let mut renderer = Self {
-            row_starts: (0..=HEIGHT).map(row_start).collect(),
-            rays,
+            fans: in_ring.iter().map(fans_of).collect(),
             streaked: sharp.clone(),
             blurred: sharp.clone(),
             sharp,
@@ -115,24 +117,20 @@ impl AnnulusRenderer {
     /// Renders `rows` (as far as the image has them) as seen at `moment`: with a rolling shutter, each
     /// row has its own.
     pub fn render_rows(&mut self, rows: Range<usize>, world: &World, moment: &Moment) {
-        let [start, end] = [rows.start, rows.end].map(|row| row.min(HEIGHT));
-        let [first, last] = [start, end].map(|row| self.row_starts[row]);
-        if first >= last {
+        let end = rows.end.min(HEIGHT);
+        let rows = rows.start.min(end)..end;
+        if self.fans[rows.clone()].iter().all(Vec::is_empty) {
             return;
         }
         let viewpoint = world.seen_from(moment.pose.position_m, moment.time_s);
         let to_world = moment.pose.attitude.to_rotation_matrix();
-        for rays in self.rays[first..last].chunks(FAN) {
-            // The last fan of a row is filled up with its last ray.
-            let ray = |n: usize| &rays[n.min(rays.len() - 1)];
-            let ways = core::array::from_fn(|n| to_world * ray(n).direction);
-            let apertures = core::array::from_fn(|n| ray(n).aperture);
-            let radiances = viewpoint.radiances(&ways, &apertures, rays.len());
-            for (ray, radiance) in rays.iter().zip(radiances) {
-                self.sharp[ray.index] = radiance;
-            }
-        }
-        for row in start..end {
+        for row in rows {
+            vectors::run(Look {
+                fans: &self.fans[row],
+                viewpoint: &viewpoint,
+                to_world: &to_world,
+                sharp: &mut self.sharp,
+            });
             self.streak(row);
         }
     }
@@ -156,22 +154,60 @@ impl AnnulusRenderer {
     }
 }
 
-impl PixelRay {
-    fn new(lens: &PanoramicLens, index: usize, radius_px: f32) -> Self {
-        let view = lens.view(pixel_centre(index));
-        let (sin_bearing, cos_bearing) = libm::sincosf(view.bearing_rad);
-        let (sin_elevation, cos_elevation) = libm::sincosf(view.elevation_rad);
-        let width = cos_elevation / radius_px;
-        Self {
-            index,
-            direction: Vector3::new(
-                cos_elevation * cos_bearing,
-                cos_elevation * sin_bearing,
-                sin_elevation,
-            ),
-            aperture: Aperture::new(width, lens.elevation_per_px()),
+/// Renders the pixels of a row.
+struct Look<'r> {
+    fans: &'r [PixelFan],
+    viewpoint: &'r Viewpoint<'r>,
+    to_world: &'r Rotation3<f32>,
+    sharp: &'r mut [f32],
+}
+
+impl Kernel for Look<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for fan in self.fans {
+            let ways = fan.directions.turned(self.to_world);
+            let count = fan.indices.len();
+            let radiances = self.viewpoint.radiances(&ways, &fan.apertures, count);
+            for (index, radiance) in fan.indices.iter().zip(radiances) {
+                self.sharp[*index] = radiance;
+            }
         }
     }
+}
+
+impl PixelFan {
+    /// Of up to [`FAN`] pixels, one at least.
+    fn new(lens: &PanoramicLens, pixels: &[usize]) -> Self {
+        let pixel = |n: usize| pixels[n.min(pixels.len() - 1)];
+        Self {
+            indices: pixels.to_vec(),
+            directions: Directions::new(&core::array::from_fn(|n| direction(lens, pixel(n)))),
+            apertures: core::array::from_fn(|n| aperture(lens, pixel(n))),
+        }
+    }
+}
+
+/// Where a pixel looks, in the body frame.
+fn direction(lens: &PanoramicLens, index: usize) -> Vector3<f32> {
+    let view = lens.view(pixel_centre(index));
+    let (sin_bearing, cos_bearing) = libm::sincosf(view.bearing_rad);
+    let (sin_elevation, cos_elevation) = libm::sincosf(view.elevation_rad);
+    Vector3::new(
+        cos_elevation * cos_bearing,
+        cos_elevation * sin_bearing,
+        sin_elevation,
+    )
+}
+
+/// How wide it looks.
+fn aperture(lens: &PanoramicLens, index: usize) -> Aperture {
+    let centre = pixel_centre(index);
+    let (_, cos_elevation) = libm::sincosf(lens.view(centre).elevation_rad);
+    let width = cos_elevation / lens.distance_from_centre(centre);
+    Aperture::new(width, lens.elevation_per_px())
 }
 
 fn pixel_centre(index: usize) -> [f32; 2] {

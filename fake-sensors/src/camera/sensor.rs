@@ -11,6 +11,7 @@ use super::flicker::Flicker;
 use super::lens::PanoramicLens;
 use super::pattern::TestPattern;
 use super::{HEIGHT, Line, WIDTH};
+use crate::vectors::{self, Kernel, split, within};
 
 /// Longest shutter of the normal mode: one frame of scan lines.
 pub const MAX_EXPOSURE_LINES: u16 = 525;
@@ -182,20 +183,21 @@ impl ImageSensor {
         );
         let light = self.light * self.flicker.share(self.frame_number, row, exposure.lines);
         let electrons_per_radiance = light * FULL_WELL_E * f32::from(exposure.lines) / WHITE_LINES;
-        let top = (CONVERTER_LEVELS - 1) as i32;
-        let levels_per_electron = exposure.gain * top as f32 / FULL_WELL_E;
-        // Two passes: the first has no branches and no tables, and the compiler takes four pixels at once.
+        let top = (CONVERTER_LEVELS - 1) as f32;
+        let levels_per_electron = exposure.gain * top / FULL_WELL_E;
+        // Two passes: the first has no branches and no tables, and the compiler takes several pixels at once.
         let mut levels = [0; WIDTH];
-        let lit = radiance.iter().zip(shading);
-        for ((level, (light, shading)), &bits) in levels.iter_mut().zip(lit).zip(bits) {
-            let expected = light * shading * electrons_per_radiance;
-            let sigma = (expected + READ_NOISE_E * READ_NOISE_E).sqrt();
-            let electrons = (expected + sigma * deviate(bits)).min(FULL_WELL_E);
-            *level = ((electrons * levels_per_electron + 0.5) as i32).clamp(0, top);
-        }
+        vectors::run(Convert {
+            radiance,
+            shading,
+            bits,
+            electrons_per_radiance,
+            levels_per_electron,
+            levels: &mut levels,
+        });
         let (pixels, _) = line.as_chunks_mut::<2>();
         for (pixel, level) in pixels.iter_mut().zip(levels) {
-            *pixel = [NEUTRAL, self.tone_curve[level as usize]];
+            *pixel = [NEUTRAL, self.tone_curve[level]];
         }
         self.spoil(row, pixels);
     }
@@ -217,6 +219,33 @@ impl ImageSensor {
     }
 }
 
+/// What the converter makes of the light on some pixels.
+struct Convert<'p> {
+    radiance: &'p [f32],
+    shading: &'p [f32],
+    /// Noise.
+    bits: &'p [[u8; 4]],
+    electrons_per_radiance: f32,
+    levels_per_electron: f32,
+    levels: &'p mut [usize],
+}
+
+impl Kernel for Convert<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let top = (CONVERTER_LEVELS - 1) as f32;
+        let lit = self.radiance.iter().zip(self.shading);
+        for ((level, (light, shading)), &bits) in self.levels.iter_mut().zip(lit).zip(self.bits) {
+            let expected = light * shading * self.electrons_per_radiance;
+            let sigma = (expected + READ_NOISE_E * READ_NOISE_E).sqrt();
+            let electrons = (expected + sigma * deviate(bits)).min(FULL_WELL_E);
+            (*level, _) = split(within(electrons * self.levels_per_electron + 0.5, top));
+        }
+    }
+}
+
 /// Natural fall-off of a lens: cos^4 of the field angle.
 fn cos_fourth(radius_px: f32) -> f32 {
     let tan = radius_px / FOCAL_LENGTH_PX;
@@ -226,6 +255,7 @@ fn cos_fourth(radius_px: f32) -> f32 {
 
 /// A deviate of mean 0 and variance 1: the sum of four even deviates (Irwin-Hall), normal out to
 /// 3.4 standard deviations, and thirty times cheaper than a logarithm and a sine per pixel.
+#[inline(always)]
 fn deviate(bits: [u8; 4]) -> f32 {
     /// Four times the mean of a byte.
     const MEAN: f32 = 510.0;

@@ -198,18 +198,29 @@ impl Lattice {
     }
 
     fn add_to(&self, field: &mut [f32], width: usize) {
-        let across: Vec<_> = (0..width).map(|u| spline(u, self.cell)).collect();
+        let wide = self.widened(width);
         for (v, line) in field.chunks_exact_mut(width).enumerate() {
-            let (first_row, row_weights) = spline(v, self.cell);
-            for (texel, &(first_column, column_weights)) in line.iter_mut().zip(&across) {
-                for (row, row_weight) in (first_row..).zip(row_weights) {
-                    let start = row * self.columns + first_column;
-                    let values = &self.values[start..start + 4];
-                    let sum: f32 = values.iter().zip(column_weights).map(|(a, b)| a * b).sum();
-                    *texel += row_weight * sum;
+            let (first_row, weights) = spline(v, self.cell);
+            let rows = wide.chunks_exact(width).skip(first_row);
+            for (row, weight) in rows.zip(weights) {
+                for (texel, value) in line.iter_mut().zip(row) {
+                    *texel += weight * value;
                 }
             }
         }
+    }
+
+    /// Each row of the lattice, smoothed along its `width` texels.
+    fn widened(&self, width: usize) -> Vec<f32> {
+        let across: Vec<_> = (0..width).map(|u| spline(u, self.cell)).collect();
+        let rows = self.values.chunks_exact(self.columns);
+        rows.flat_map(|row| {
+            across.iter().map(|&(first, weights)| {
+                let values = &row[first..first + 4];
+                values.iter().zip(weights).map(|(a, b)| a * b).sum::<f32>()
+            })
+        })
+        .collect()
     }
 }
 

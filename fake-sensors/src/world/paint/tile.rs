@@ -1,7 +1,8 @@
 //! Materials: square grey textures that repeat, prefiltered.
 
-use super::texture::{log2, mix, split};
+use super::texture::{log2, mix};
 use crate::random::Normal;
+use crate::vectors::split;
 
 /// Number of texels along an edge: a power of two, so that every level of the pyramid repeats as well.
 pub const SIDE: usize = 256;

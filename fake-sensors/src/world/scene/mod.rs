@@ -19,7 +19,7 @@ use nalgebra::Vector3;
 use super::paint::Tile;
 use bvh::Bvh;
 use cover::{Cover, Covers, Sight};
-use fan::{FAN, Fan};
+use fan::{Directions, FAN, Fan};
 use haze::Haze;
 use light::Curve;
 use motion::Path;
@@ -120,7 +120,9 @@ pub struct Viewpoint<'a> {
 impl Scene {
     /// The scene as seen from `position_m` at `time_s`.
     pub fn seen_from(&self, position_m: Vector3<f32>, time_s: f64) -> Viewpoint<'_> {
+        let mut surfaces = Vec::with_capacity(self.surfaces.len());
         let seen = |surface| Surface::seen_from(surface, position_m);
+        surfaces.extend(self.surfaces.iter().filter_map(seen));
         let mut levels = [1.0; MAX_LIGHTS];
         for (level, curve) in levels[1..].iter_mut().zip(&self.lights) {
             *level = curve.level(time_s);
@@ -128,7 +130,7 @@ impl Scene {
         Viewpoint {
             scene: self,
             position_m,
-            surfaces: self.surfaces.iter().filter_map(seen).collect(),
+            surfaces,
             moved: self.movers.iter().map(|mover| mover.at(time_s)).collect(),
             levels,
         }
@@ -184,21 +186,34 @@ impl Viewpoint<'_> {
 
     /// [`Self::radiance`] of the first `count` of several directions, which is quicker than one by one.
     #[must_use]
+    #[inline(always)]
     pub fn radiances(
         &self,
-        directions: &[Vector3<f32>; FAN],
+        directions: &Directions,
         apertures: &[Aperture; FAN],
         count: usize,
     ) -> [f32; FAN] {
-        let hits = Fan::new(directions).first_hits(&self.surfaces);
+        let fan = Fan::first_hits(directions, &self.surfaces);
         let mut radiances = [0.0; FAN];
+        if self.holds_solids() {
+            for ray in 0..count.min(FAN) {
+                let hit = fan.hit(ray, &self.surfaces);
+                radiances[ray] = self.radiance_of(hit, directions.get(ray), &apertures[ray]);
+            }
+            return radiances;
+        }
+        let footprints_m = fan.footprints_m(apertures);
         for ray in 0..count.min(FAN) {
-            radiances[ray] = self.radiance_of(hits[ray], directions[ray], &apertures[ray]);
+            radiances[ray] = match fan.hit(ray, &self.surfaces) {
+                Some(hit) => hit.radiance_over(footprints_m[ray]) * self.levels[hit.light()],
+                None => self.dome(&directions.get(ray), apertures[ray].mean_rad()),
+            };
         }
         radiances
     }
 
     /// Radiance from unit `direction`, where `hit` is the first surface.
+    #[inline(never)]
     fn radiance_of(
         &self,
         hit: Option<Hit<'_>>,
@@ -255,8 +270,8 @@ impl Viewpoint<'_> {
     }
 
     fn first_hit(&self, direction: &Vector3<f32>) -> Option<Hit<'_>> {
-        let [first, ..] = Fan::new(&[*direction; FAN]).first_hits(&self.surfaces);
-        first
+        let directions = Directions::new(&[*direction; FAN]);
+        Fan::first_hits(&directions, &self.surfaces).hit(0, &self.surfaces)
     }
 
     fn covers(&self, ray: &Ray, limit_m: f32) -> Covers<'_> {

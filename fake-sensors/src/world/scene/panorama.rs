@@ -45,6 +45,7 @@ impl Panorama {
     }
 
     /// Radiance from `direction` (of any length), averaged over `width_rad`.
+    #[inline(never)]
     pub fn radiance(&self, direction: &Vector3<f32>, width_rad: f32) -> f32 {
         let level = (direction.x * direction.x + direction.y * direction.y).sqrt();
         let elevation = libm::atan2f(direction.z, level);

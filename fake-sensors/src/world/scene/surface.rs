@@ -138,10 +138,14 @@ impl<'a> SeenSurface<'a> {
 }
 
 impl Hit<'_> {
-    /// Radiance towards a pixel that is `width_rad` wide: the skin, averaged over the pixel's
-    /// footprint. The footprint is a slanted ellipse; a circle of the same area stands for it.
+    /// Radiance towards a pixel that is `width_rad` wide.
     pub fn radiance(&self, width_rad: f32) -> f32 {
-        let footprint_m = self.distance_m * width_rad / self.cos_incidence.sqrt();
+        self.radiance_over(footprint_m(self.distance_m, width_rad, self.cos_incidence))
+    }
+
+    /// The skin, averaged over a footprint.
+    #[inline(always)]
+    pub fn radiance_over(&self, footprint_m: f32) -> f32 {
         let (u_m, v_m) = (self.u_m, self.v_m);
         match &self.surface.skin {
             Skin::Picture(texture) => texture.sample(u_m, v_m, footprint_m),
@@ -158,4 +162,11 @@ impl Hit<'_> {
     pub fn light(&self) -> usize {
         self.surface.light.into()
     }
+}
+
+/// The footprint on a surface of a pixel that is `width_rad` wide is a slanted ellipse: the diameter
+/// of the circle of the same area, but for a constant.
+#[inline(always)]
+pub fn footprint_m(distance_m: f32, width_rad: f32, cos_incidence: f32) -> f32 {
+    distance_m * width_rad / cos_incidence.sqrt()
 }
