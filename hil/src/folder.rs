@@ -10,6 +10,9 @@ use crate::record::Recording;
 use crate::report;
 use crate::scenario::Scenario;
 
+/// The file of everything that happened in a flight.
+pub const RECORDING: &str = "recording.json";
+
 /// Where a flight goes unless it is told otherwise.
 pub fn default_path(scenario: &Scenario, backend: &str) -> PathBuf {
     Path::new("flights").join(format!(
@@ -34,10 +37,7 @@ pub fn write(folder: &Path, flown: &Flown) -> io::Result<()> {
         folder.join("summary.json"),
         serde_json::to_string_pretty(&flown.summary)? + "\n",
     )?;
-    fs::write(
-        folder.join("recording.json"),
-        serde_json::to_string(&flown.recording)? + "\n",
-    )?;
+    fs::write(folder.join(RECORDING), recording_text(&flown.recording)?)?;
     fs::write(folder.join("flight.log"), log(&flown.recording))?;
     fs::write(
         folder.join("report.html"),
@@ -47,6 +47,14 @@ pub fn write(folder: &Path, flown: &Flown) -> io::Result<()> {
         folder.join("map.svg"),
         report::picture(&flown.recording, &flown.summary),
     )
+}
+
+/// `recording.json`, byte for byte.
+///
+/// # Errors
+/// Never: a recording has nothing that JSON does not.
+pub fn recording_text(recording: &Recording) -> serde_json::Result<String> {
+    Ok(serde_json::to_string(recording)? + "\n")
 }
 
 /// The log as text. A record of the firmware's has its own time stamp before it and its log

@@ -6,15 +6,9 @@ use serde::Serialize;
 use super::Failure;
 use super::console::Console;
 use super::fly::ScenarioArguments;
-use crate::flight::{self, FlightError};
-use crate::metrics::quantile;
-use crate::parallel;
+use crate::flight::FlightError;
 use crate::scenario::{Homing, Scenario};
-use crate::summary::Summary;
-
-/// Closer than this to the true start counts as home, metres (the radius within which 8 of 9 homing
-/// runs of the paper ended, Fig. 4).
-const HOME_RADIUS_M: f64 = 0.5;
+use crate::sweep::{self, FlightFigures, HOME_RADIUS_M, Vessel};
 
 /// Options of `hil campaign`.
 #[derive(Debug, Args)]
@@ -100,15 +94,16 @@ fn fly_all(
         .map(|index| arguments.first.wrapping_add(index))
         .collect();
     let mut progress = console.progress("Flying", arguments.seeds);
-    let flown = parallel::map(
+    let flights = sweep::fly_each(
         &seeds,
+        Vessel::Native,
         |seed| {
-            let scenario = Scenario {
+            Ok(Scenario {
                 homing,
-                ..arguments.scenario.scenario(*seed)
-            };
-            flight::fly_native(&scenario, &mut |_| ()).map(|flown| flown.summary)
+                ..arguments.scenario.scenario(seed)
+            })
         },
+        |_, _| Ok(()),
         |done| {
             progress.set(done as u64, || {
                 let flights = seeds.len();
@@ -117,34 +112,27 @@ fn fly_all(
         },
     );
     progress.finish();
-    let summaries = flown.into_iter().collect::<Result<Vec<_>, _>>()?;
-    Ok(statistics(homing, &summaries))
+    flights.map(|flights| statistics(homing, &flights))
 }
 
-fn statistics(homing: Homing, summaries: &[Summary]) -> Statistics {
-    let mean =
-        |of: fn(&Summary) -> f64| summaries.iter().map(of).sum::<f64>() / summaries.len() as f64;
-    let home_errors_m: Vec<f64> = summaries
+fn statistics(homing: Homing, flights: &[FlightFigures]) -> Statistics {
+    let all = sweep::Statistics::of(flights, &[]);
+    let home_errors_m: Vec<f64> = flights.iter().map(|flight| flight.home_error_m).collect();
+    let near = home_errors_m
         .iter()
-        .map(|summary| summary.home_error_m)
-        .collect();
-    let mut sorted = home_errors_m.clone();
-    sorted.sort_by(f64::total_cmp);
+        .filter(|error| **error <= HOME_RADIUS_M);
     Statistics {
         homing: homing.name(),
-        flights: summaries.len(),
-        completed: summaries.iter().filter(|summary| summary.completed).count(),
-        within_half_a_metre: sorted.partition_point(|error| *error <= HOME_RADIUS_M),
-        mean_home_error_m: mean(|summary| summary.home_error_m),
-        p50_home_error_m: quantile(&sorted, 0.5),
-        p95_home_error_m: quantile(&sorted, 0.95),
-        mean_cross_track_rms_m: mean(|summary| summary.cross_track_rms_m),
-        mean_bytes_per_m: mean(|summary| summary.bytes_per_m),
-        mean_flight_s: mean(|summary| summary.flight_s),
-        mean_link_drops: mean(|summary| {
-            let link = &summary.link;
-            (link.to_camera.frames_dropped + link.to_autopilot.frames_dropped) as f64
-        }),
+        flights: all.flights,
+        completed: all.completed,
+        within_half_a_metre: near.count(),
+        mean_home_error_m: home_errors_m.iter().sum::<f64>() / flights.len() as f64,
+        p50_home_error_m: all.home_error_m.p50,
+        p95_home_error_m: all.home_error_m.p95,
+        mean_cross_track_rms_m: all.cross_track_rms_m,
+        mean_bytes_per_m: all.bytes_per_m,
+        mean_flight_s: all.flight_s,
+        mean_link_drops: all.link_drops,
         home_errors_m,
     }
 }

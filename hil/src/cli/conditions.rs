@@ -5,10 +5,10 @@ use std::path::Path;
 use autopilot::app::Quirks;
 use clap::{Args, ValueEnum};
 
-use crate::scenario::{CameraTrouble, Conditions, Correction, LensPage, Quirk, Wind, WireFault};
-
-/// The wind of the strongest gale, m/s (Beaufort 12 begins at 32.7 m/s).
-const STRONGEST_WIND_M_S: f64 = 32.0;
+use crate::scenario::{
+    CameraTrouble, Conditions, Correction, LIGHTS, LensPage, Quirk, STRONGEST_WIND_M_S, Wind,
+    WireFault,
+};
 
 /// What the flight is up against.
 #[derive(Clone, Debug, Args)]
@@ -86,7 +86,7 @@ fn parse_share(text: &str) -> Result<f64, String> {
 fn parse_light(text: &str) -> Result<f32, String> {
     text.parse()
         .ok()
-        .filter(|factor| (0.001..=1_000.0).contains(factor))
+        .filter(|factor| LIGHTS.contains(factor))
         .ok_or_else(|| "a factor from 0.001 to 1000".to_owned())
 }
 
@@ -128,20 +128,15 @@ fn parse_lens(text: &str) -> Result<LensPage, String> {
 
 fn parse_wind(text: &str) -> Result<Wind, String> {
     let (mean, turbulence) = text.split_once(',').unwrap_or((text, "0"));
-    let number = |text: &str| text.parse::<f64>().ok().filter(|number| *number >= 0.0);
-    match (number(mean), number(turbulence)) {
-        (Some(mean_m_s), Some(turbulence))
-            if mean_m_s <= STRONGEST_WIND_M_S && turbulence <= 1.0 =>
-        {
-            Ok(Wind {
-                mean_m_s,
-                turbulence,
-            })
-        }
-        _ => Err(format!(
+    let number = |text: &str| text.parse::<f64>().ok();
+    let wind = number(mean)
+        .zip(number(turbulence))
+        .and_then(|(mean_m_s, turbulence)| Wind::new(mean_m_s, turbulence));
+    wind.ok_or_else(|| {
+        format!(
             "a speed from 0 to {STRONGEST_WIND_M_S} m/s and, after a comma, a turbulence from 0 to 1: 1.5,0.2"
-        )),
-    }
+        )
+    })
 }
 
 #[cfg(test)]

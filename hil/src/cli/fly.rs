@@ -16,6 +16,7 @@ use crate::image::{self, Variant};
 use crate::live::Stop;
 use crate::rig::file::Rig;
 use crate::rig::{BoardSetup, fly_board, probe};
+use crate::scenario::file::{self, ScenarioFile};
 use crate::scenario::{Homing, Route, Scenario, Spacing};
 use crate::summary::{DirectionFigures, Summary};
 
@@ -68,7 +69,7 @@ impl ScenarioArguments {
     /// The scenario of one seed.
     pub fn scenario(&self, seed: u64) -> Scenario {
         Scenario {
-            route: self.route,
+            route: self.route.clone(),
             world: self.world.clone(),
             seed,
             spacing: self.spacing,
@@ -94,23 +95,27 @@ fn parse_spacing(text: &str) -> Result<Spacing, String> {
     hil fly --backend native --seed 7       the same logic, without a processor\n  \
     hil fly --route s --spacing 1 --json    one JSON object on stdout\n  \
     hil fly --route line --homing sequence  home by the camera alone\n  \
+    hil fly tests/scenarios/u.toml --seed 7 one flight of a scenario\n  \
     hil fly --corrupt 1% --quirk self-acknowledge\n  \
     hil fly --restart-autopilot 120         a brown-out in mid-route\n  \
     hil fly --backend board --rig discovery a board on the desk, in real time; frames over serial\n\n\
     In a checkout, `cargo fly` is `hil fly`, built first.\n\
     Exit code 0: the drone came home. 1: it did not. 2: the flight could not be flown.")]
 pub struct Arguments {
+    /// A scenario: world, route, homing and conditions are its own
+    #[arg(value_name = "FILE.toml", conflicts_with_all = ["route", "world", "spacing", "homing", "ConditionArguments"])]
+    file: Option<PathBuf>,
     #[command(flatten)]
     scenario: ScenarioArguments,
-    /// The board
-    #[arg(long, value_enum, default_value_t)]
-    backend: Backend,
+    /// The board [default: as the file says, else emulator]
+    #[arg(long, value_enum)]
+    backend: Option<Backend>,
     /// The rig of the backend `board`: the path of its file, or its name
     #[arg(long, value_name = "NAME|FILE", required_if_eq("backend", "board"))]
     rig: Option<String>,
-    /// Seed of world, sensors and camera noise
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
+    /// Seed of world, sensors and camera noise [default: the file's first, else 1]
+    #[arg(long)]
+    seed: Option<u64>,
     /// Folder for summary.json, flight.log, recording.json, report.html and map.svg [default: flights/ROUTE-BACKEND-SEED]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
@@ -122,19 +127,34 @@ pub struct Arguments {
     firmware: Option<PathBuf>,
 }
 
+/// What is to be flown, and on which board.
+fn scenario(arguments: &Arguments) -> Result<(Scenario, Backend), Failure> {
+    let Some(file) = &arguments.file else {
+        let scenario = arguments.scenario.scenario(arguments.seed.unwrap_or(1));
+        return Ok((scenario, arguments.backend.unwrap_or_default()));
+    };
+    let file = ScenarioFile::open(file)?;
+    let scenario = file.scenario(arguments.seed.unwrap_or(file.seeds.first))?;
+    let own = match file.backend {
+        file::Backend::Native => Backend::Native,
+        file::Backend::Emulator => Backend::Emulator,
+    };
+    Ok((scenario, arguments.backend.unwrap_or(own)))
+}
+
 pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
-    let scenario = arguments.scenario.scenario(arguments.seed);
+    let (scenario, backend) = scenario(arguments)?;
     let out = arguments
         .out
         .clone()
-        .unwrap_or_else(|| folder::default_path(&scenario, arguments.backend.name()));
+        .unwrap_or_else(|| folder::default_path(&scenario, backend.name()));
     let unwritable = |error| format!("{}: {error}", out.display());
-    let rig = match (arguments.backend, &arguments.rig) {
+    let rig = match (backend, &arguments.rig) {
         (Backend::Board, Some(rig)) => Some(Rig::open(rig)?),
         (_, Some(_)) => return Err("--rig is for --backend board".into()),
         (_, None) => None,
     };
-    let image = match arguments.backend {
+    let image = match backend {
         Backend::Native => None,
         Backend::Board => rig
             .as_ref()
@@ -173,6 +193,9 @@ fn on_board(
     let conditions = &scenario.conditions;
     if conditions.camera.is_some() || conditions.lens.is_some() {
         return Err("a camera fault or a lens of its own wants the emulator".into());
+    }
+    if matches!(scenario.homing, Homing::SequenceEvery(_)) {
+        return Err(FlightError::SequenceSpacing.into());
     }
     let firmware = Firmware::parse(&image.bytes)?;
     let stop = Stop::on_signals()?;
@@ -266,7 +289,7 @@ impl Image {
 }
 
 /// Flies with a progress bar.
-fn with_progress(
+pub(super) fn with_progress(
     console: &Console,
     fly: impl FnOnce(&mut dyn FnMut(Progress)) -> Result<Flown, FlightError>,
 ) -> Result<Flown, FlightError> {

@@ -17,6 +17,7 @@ mod desk;
 mod drift;
 mod ekf_replay;
 mod emulate;
+mod experiments;
 mod exposure;
 mod film;
 mod flash;
@@ -29,10 +30,13 @@ mod link_check;
 mod live;
 mod log;
 mod look;
+mod merge;
 mod profile;
+mod replay;
 mod rig;
 mod size;
 mod steps;
+mod sweep;
 mod timing;
 mod world;
 
@@ -52,6 +56,8 @@ use console::Console;
     after_help = "Examples:\n  \
         hil fly                               the paper's U on the emulated board\n  \
         hil campaign --compare                20 seeds, with homing and by odometry alone\n  \
+        hil sweep tests/scenarios/u.toml      a scenario with what is expected of it\n  \
+        hil experiments                       the paper's claims, one by one\n  \
         hil homing-check tests/golden/data/homing.jsonl\n\n\
         In a checkout, `cargo fly` builds and runs `hil fly`.\n\
         Exit code 0: what was asked for is true. 1: it is not. 2: it could not be done."
@@ -81,6 +87,14 @@ enum Verb {
     Info(info::Arguments),
     /// Flies many seeds and prints their statistics
     Campaign(campaign::Arguments),
+    /// Flies many seeds of a scenario and holds them against what it expects
+    Sweep(sweep::Arguments),
+    /// Puts the shards of a sweep together
+    Merge(merge::Arguments),
+    /// Flies a flight that failed in a sweep again
+    Replay(replay::Arguments),
+    /// Prints every claim of the paper beside what is measured here
+    Experiments(experiments::Arguments),
     /// Measures from where a snapshot of so many bytes brings a robot home
     Catchment(catchment::Arguments),
     /// Finds the lens in a unit's own pictures and writes its record
@@ -133,6 +147,10 @@ pub fn main() -> ExitCode {
         Verb::Log(arguments) => log::run(&arguments, &console),
         Verb::Info(arguments) => info::run(&arguments, &console),
         Verb::Campaign(arguments) => campaign::run(&arguments, &console),
+        Verb::Sweep(arguments) => sweep::run(&arguments, &console),
+        Verb::Merge(arguments) => merge::run(&arguments, &console),
+        Verb::Replay(arguments) => replay::run(&arguments, &console),
+        Verb::Experiments(arguments) => experiments::run(&arguments, &console),
         Verb::Catchment(arguments) => catchment::run(&arguments, &console),
         Verb::Calibrate(arguments) => calibrate::run(&arguments, &console),
         Verb::CalibrateTiming(arguments) => calibrate_timing::run(&arguments, &console),

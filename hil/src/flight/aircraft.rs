@@ -29,6 +29,14 @@ const RESTART_MS: u64 = 5_000;
 /// vector takes, and than the app rests at home.
 const PATIENCE_MS: u64 = 20_000;
 
+/// The operator's patience with a way back, milliseconds a metre: three times what cruise and homing every two
+/// metres take.
+const FOLLOWING_MS_PER_M: f32 = 7_000.0;
+
+/// From the farthest place of a long route to the fence, metres: what odometry alone is off after some hundred
+/// metres.
+const FENCE_MARGIN_M: f32 = 10.0;
+
 /// Stream of the seed that draws where the wind comes from, clear of the sensors'.
 const WIND_DIRECTION_STREAM: u64 = u64::from_be_bytes(*b"windfrom");
 
@@ -60,9 +68,8 @@ pub struct Aircraft {
 impl Aircraft {
     /// On the ground at the start of the route, facing north.
     pub fn new(scenario: &Scenario, route: &app::Route) -> Self {
-        let spacing = [scenario.spacing.decimetres()];
-        let script = Script::record_and_return(route, scenario.homing.record(), &spacing);
-        let settings = settings(&scenario.conditions);
+        let script = scenario.script();
+        let settings = settings(&scenario.conditions, route);
         let stops_s = scenario.conditions.restart_s;
         Self {
             vehicle: Vehicle::standing_at(
@@ -247,12 +254,26 @@ pub fn camera_pose(position_m: &Vector3<f64>, attitude: &UnitQuaternion<f64>) ->
     }
 }
 
-/// The app's settings in a flight.
-fn settings(conditions: &Conditions) -> Settings {
+/// The app's settings in a flight. A route that leaves the published fence, or takes longer than the published
+/// routes, moves fence and limits with it.
+fn settings(conditions: &Conditions, route: &app::Route) -> Settings {
+    let usual = Settings::default();
+    let places = route.waypoints.iter().map(|waypoint| waypoint.place);
+    let reach_m = places
+        .map(|place| libm::hypotf(place.x, place.y))
+        .fold(0.0, f32::max);
+    let following_ms = (FOLLOWING_MS_PER_M * route.length_m()) as u64;
     Settings {
         quirks: conditions.quirks,
         correction: conditions.correction.sd(),
-        ..Settings::default()
+        max_distance_m: if reach_m < usual.max_distance_m {
+            usual.max_distance_m
+        } else {
+            reach_m + FENCE_MARGIN_M
+        },
+        follow_limit_ms: usual.follow_limit_ms.max(following_ms),
+        flight_limit_ms: usual.flight_limit_ms.max(2 * following_ms),
+        ..usual
     }
 }
 

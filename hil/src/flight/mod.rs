@@ -24,7 +24,7 @@ use crate::board::observer::Observer;
 use crate::board::{Board, BoardError};
 use crate::record::{Recording, Side, WallSegment, What};
 use crate::recorder::Recorder;
-use crate::scenario::Scenario;
+use crate::scenario::{Homing, NoWay, Scenario};
 use crate::summary::Summary;
 
 use aircraft::Aircraft;
@@ -51,6 +51,14 @@ pub enum FlightError {
     /// A fault of the camera's wires, and a board that has none.
     #[error("the native board has no camera wires: a camera fault wants the emulator")]
     NoWires,
+    /// A spacing of a sequence's snapshots that an image does not have.
+    #[error(
+        "the image has its own spacing of a sequence's snapshots: another one wants the native board"
+    )]
+    SequenceSpacing,
+    /// The world has no room for a route drawn in it.
+    #[error(transparent)]
+    NoWay(#[from] NoWay),
     /// The board cannot go on.
     #[error(transparent)]
     Board(#[from] BoardError),
@@ -96,10 +104,13 @@ pub fn fly_native(
     let started = Instant::now();
     let record = scenario.conditions.lens.map(|page| page.lens());
     let lens = record.unwrap_or(Err(RecordError::Empty));
-    let parameters = pilot::Parameters {
+    let mut parameters = pilot::Parameters {
         lens: lens.unwrap_or_default(),
         ..pilot::Parameters::DEFAULT
     };
+    if let Homing::SequenceEvery(spacing) = scenario.homing {
+        parameters.navigator.sequence_spacing_m = spacing.metres() as f32;
+    }
     let pilot = Pilot::new(&parameters).map_err(BoardError::Calibration)?;
     let initial = pilot.exposure();
     let chip = Tcm8230::streaming(0, EXTCLK_HZ, initial.shutter_lines, initial.gain);
@@ -136,6 +147,9 @@ fn fly_firmware<'w>(
     observer: Option<&'w mut dyn Observer>,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Flown, FlightError> {
+    if matches!(scenario.homing, Homing::SequenceEvery(_)) {
+        return Err(FlightError::SequenceSpacing);
+    }
     let started = Instant::now();
     let world = World::open(&scenario.world, scenario.seed)?;
     let mut board = Emulated::boot(firmware, camera(scenario, &world, Tcm8230::default()))?

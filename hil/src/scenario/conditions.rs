@@ -1,10 +1,18 @@
 //! What a flight is up against: faults, the autopilot's ways, and the weather.
 
+use std::ops::RangeInclusive;
+
 use autopilot::app::{CorrectionSd, Quirks};
 use clap::ValueEnum;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::{CameraTrouble, LensPage};
+
+/// The wind of the strongest gale, m/s (Beaufort 12 begins at 32.7 m/s).
+pub const STRONGEST_WIND_M_S: f64 = 32.0;
+/// The lamps' strengths that a flight may have, over that of the world's own: the range that the sensor's
+/// exposure spans about the first one.
+pub const LIGHTS: RangeInclusive<f32> = 0.001..=1_000.0;
 
 /// Nothing out of the ordinary, by default.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -46,7 +54,7 @@ impl Default for Conditions {
 }
 
 /// How firmly the autopilot's filter is told to believe a correction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Correction {
     /// All but overwrites the estimate: 0.001 m, 0.002 rad (the published app since May 2023)
@@ -75,8 +83,20 @@ pub struct Wind {
     pub turbulence: f64,
 }
 
+impl Wind {
+    /// `None` unless the mean is from 0 to [`STRONGEST_WIND_M_S`] and the turbulence from 0 to 1.
+    pub fn new(mean_m_s: f64, turbulence: f64) -> Option<Self> {
+        let blows = (0.0..=STRONGEST_WIND_M_S).contains(&mean_m_s);
+        (blows && (0.0..=1.0).contains(&turbulence)).then_some(Self {
+            mean_m_s,
+            turbulence,
+        })
+    }
+}
+
 /// A peculiarity of the published flight app on the link, by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Quirk {
     /// Takes its own command for the camera's echo: sends each one once
     SelfAcknowledge,

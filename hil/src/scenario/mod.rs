@@ -1,19 +1,23 @@
 //! What is to be flown: route, world, seed and the navigator's settings.
 
 mod conditions;
+pub mod expectation;
+pub mod file;
 mod lens;
+mod meander;
 mod wire_fault;
 
-use autopilot::app;
+use autopilot::app::{self, Experiment, Script};
 use clap::ValueEnum;
 use link::{Record, WorldPoint};
 
-pub use conditions::{Conditions, Correction, Quirk, Wind};
+pub use conditions::{Conditions, Correction, LIGHTS, Quirk, STRONGEST_WIND_M_S, Wind};
 pub use lens::{LensFileError, LensPage};
+pub use meander::{Meander, NoWay};
 pub use wire_fault::{CameraTrouble, WireFault};
 
 /// The scripted way out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Debug, Default, PartialEq, ValueEnum)]
 pub enum Route {
     /// The paper's U (Fig. 6B): 5 m, 4 m, 5 m, out and back twice: 56 m
     #[default]
@@ -26,39 +30,71 @@ pub enum Route {
     Corner,
     /// The leg of the corridor (Fig. 5C and D): 6 m out and back ten times: 120 m
     Corridor,
+    /// A way of a scenario's own
+    #[value(skip)]
+    Own(Polyline),
+    /// A whole experiment of the published app: ways, recording and homing are its own
+    #[value(skip)]
+    Experiment(Experiment),
+}
+
+/// A way through places.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polyline {
+    /// What it is called.
+    pub name: String,
+    /// North and east of the start, metres. The first is where recording begins.
+    pub places: Vec<[f32; 2]>,
+    /// How often it is flown, every second time backwards.
+    pub passes: usize,
 }
 
 impl Route {
     /// The name on the command line and in the summary.
-    pub fn name(self) -> &'static str {
+    pub fn name(&self) -> &str {
         match self {
             Self::U => "u",
             Self::S => "s",
             Self::Line => "line",
             Self::Corner => "corner",
             Self::Corridor => "corridor",
+            Self::Own(polyline) => &polyline.name,
+            Self::Experiment(experiment) => experiment.name(),
         }
     }
 
     /// The way points.
-    pub fn waypoints(self) -> app::Route {
+    pub fn waypoints(&self) -> app::Route {
         match self {
             Self::U => app::Route::u(),
             Self::S => app::Route::s(),
             // South, like the first leg of the U: the arena's middle is there.
-            Self::Line => along(&[(0.0, 0.0), (-5.0, 0.0)]),
-            Self::Corner => along(&[(0.0, 0.0), (-3.0, 0.0), (-3.0, 1.0)]),
+            Self::Line => along(&[[0.0, 0.0], [-5.0, 0.0]], 1),
+            Self::Corner => along(&[[0.0, 0.0], [-3.0, 0.0], [-3.0, 1.0]], 1),
             Self::Corridor => app::Route::corridor(),
+            Self::Own(polyline) => along(&polyline.places, polyline.passes),
+            Self::Experiment(experiment) => places_of(&experiment.script(Experiment::REPEATS)),
         }
     }
 }
 
 /// A route through places (north, east), metres.
-fn along(places: &[(f32, f32)]) -> app::Route {
+fn along(places: &[[f32; 2]], passes: usize) -> app::Route {
     let places: Vec<_> = places
         .iter()
-        .map(|(north, east)| WorldPoint::from_north_east(*north, *east))
+        .map(|[north, east]| WorldPoint::from_north_east(*north, *east))
         .collect();
+    app::Route::passes(&places, passes)
+}
+
+/// The places that a script flies to, from the origin on.
+fn places_of(script: &Script) -> app::Route {
+    let flown_to = script.steps.iter().filter_map(|step| match step {
+        app::Step::FlyTo { place, .. } => Some(*place),
+        _ => None,
+    });
+    let start = WorldPoint::default();
+    let places: Vec<_> = std::iter::once(start).chain(flown_to).collect();
     app::Route::through(&places)
 }
 
@@ -73,6 +109,9 @@ pub enum Homing {
     /// Homing from snapshot to snapshot, 0.25 m apart, without odometry (Fig. 6C); where one is missed
     /// nothing leads to the next
     Sequence,
+    /// The same with another distance between snapshots than the firmware's own
+    #[value(skip)]
+    SequenceEvery(Spacing),
 }
 
 impl Homing {
@@ -81,7 +120,7 @@ impl Homing {
         match self {
             Self::Both => "both",
             Self::Odometry => "odometry",
-            Self::Sequence => "sequence",
+            Self::Sequence | Self::SequenceEvery(_) => "sequence",
         }
     }
 
@@ -90,7 +129,7 @@ impl Homing {
         match self {
             Self::Both => Record::ROUTE,
             Self::Odometry => Record::ODOMETRY,
-            Self::Sequence => Record::SEQUENCE,
+            Self::Sequence | Self::SequenceEvery(_) => Record::SEQUENCE,
         }
     }
 }
@@ -113,10 +152,22 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// What the operator lets the flight app do.
+    pub fn script(&self) -> Script {
+        match &self.route {
+            Route::Experiment(experiment) => experiment.script(Experiment::REPEATS),
+            route => {
+                let spacing = [self.spacing.decimetres()];
+                Script::record_and_return(&route.waypoints(), self.homing.record(), &spacing)
+            }
+        }
+    }
+
     /// The distance between snapshots that holds in this flight, metres.
     pub fn snapshot_spacing_m(&self) -> f64 {
         match self.homing {
             Homing::Both | Homing::Odometry => self.spacing.metres(),
+            Homing::SequenceEvery(spacing) => spacing.metres(),
             Homing::Sequence => pilot::Parameters::DEFAULT
                 .navigator
                 .sequence_spacing_m

@@ -1,0 +1,238 @@
+//! A scenario as its file describes it, in TOML: world, route, recording, conditions, seeds, and what is expected.
+//!
+//! Lengths are in metres, times in seconds, speeds in m/s. Every number has a range, every table a closed list of keys:
+//! what does not fit is refused with the line where it stands.
+
+mod description;
+#[cfg(test)]
+mod tests;
+
+use std::fs;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use crc::{CRC_64_XZ, Crc};
+use fake_sensors::world::World;
+use serde::{Deserialize, Serialize};
+
+use super::expectation::Expectation;
+use super::{Conditions, Homing, Meander, Polyline, Route, Scenario, Spacing};
+use crate::flight::FlightError;
+use description::Description;
+
+/// A board that flies in virtual time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Backend {
+    /// The firmware's logic compiled for this machine: fast, for statistics
+    #[default]
+    Native,
+    /// The image that would be flashed, on an emulated STM32F407
+    Emulator,
+}
+
+impl Backend {
+    /// The name on the command line and in a summary.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Native => "native",
+            Self::Emulator => "emulator",
+        }
+    }
+}
+
+/// Seeds in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Seeds {
+    /// The first.
+    pub first: u64,
+    /// How many, from 1.
+    pub count: u64,
+}
+
+impl Seeds {
+    /// All of them, in order.
+    pub fn all(self) -> impl Iterator<Item = u64> {
+        (0..self.count).map(move |index| self.first.wrapping_add(index))
+    }
+}
+
+/// The way out as a file describes it.
+#[derive(Clone, Debug, PartialEq)]
+enum Way {
+    Fixed(Route),
+    /// Drawn in the world of each seed.
+    Drawn(Meander),
+}
+
+/// A file that describes a scenario.
+#[derive(Clone, Debug)]
+pub struct ScenarioFile {
+    /// The file's name, without folder and extension.
+    pub name: String,
+    /// What it stands for, for people.
+    pub meaning: String,
+    /// What it is flown on, unless somebody asks for another board.
+    pub backend: Backend,
+    /// Which flights it consists of.
+    pub seeds: Seeds,
+    /// What they are expected to do.
+    pub expectations: Vec<Expectation>,
+    world: String,
+    way: Way,
+    homing: Homing,
+    spacing: Spacing,
+    conditions: Conditions,
+    /// Where a world's file is looked for.
+    folder: PathBuf,
+    /// The file as it stands.
+    text: String,
+}
+
+/// A file that describes no scenario.
+#[derive(Debug, thiserror::Error)]
+pub enum ScenarioError {
+    /// The file cannot be read.
+    #[error("{}: {source}", file.display())]
+    Unreadable {
+        /// Which.
+        file: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file says something that cannot be flown.
+    #[error("{}:{line}: {reason}", file.display())]
+    Mistake {
+        /// Which.
+        file: PathBuf,
+        /// From 1.
+        line: usize,
+        /// What is wrong there.
+        reason: String,
+    },
+}
+
+/// What is wrong, and the bytes of the text that it is about.
+type Mistake = (Range<usize>, String);
+
+impl ScenarioFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] with the file, and the line where something is wrong.
+    pub fn open(file: &Path) -> Result<Self, ScenarioError> {
+        let text = fs::read_to_string(file).map_err(|source| ScenarioError::Unreadable {
+            file: file.to_owned(),
+            source,
+        })?;
+        Self::parse(file, text)
+    }
+
+    /// Reads a text as if it stood in that file; the file of a world is looked for beside it.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Mistake`].
+    pub fn parse(file: &Path, text: String) -> Result<Self, ScenarioError> {
+        let read = toml::from_str::<Description>(&text)
+            .map_err(|error| (error.span().unwrap_or_default(), error.message().to_owned()))
+            .and_then(|description| description.check(file));
+        match read {
+            Ok(scenario) => Ok(Self { text, ..scenario }),
+            Err((span, reason)) => Err(ScenarioError::Mistake {
+                file: file.to_owned(),
+                line: line_of(&text, &span),
+                reason,
+            }),
+        }
+    }
+
+    /// Every file of a folder, by name.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] of the first that describes no scenario, or where the folder cannot be read.
+    pub fn open_all(folder: &Path) -> Result<Vec<Self>, ScenarioError> {
+        let unreadable = |source| ScenarioError::Unreadable {
+            file: folder.to_owned(),
+            source,
+        };
+        let entries: Result<Vec<_>, _> = fs::read_dir(folder).map_err(unreadable)?.collect();
+        let mut files: Vec<PathBuf> = entries
+            .map_err(unreadable)?
+            .into_iter()
+            .map(|entry| entry.path())
+            .filter(|file| {
+                file.extension()
+                    .is_some_and(|extension| extension == "toml")
+            })
+            .collect();
+        files.sort();
+        files.iter().map(|file| Self::open(file)).collect()
+    }
+
+    /// The flight of one seed.
+    ///
+    /// # Errors
+    /// [`FlightError`] where a route is to be drawn in a world that cannot be built, or has no room for it.
+    pub fn scenario(&self, seed: u64) -> Result<Scenario, FlightError> {
+        let world = self.world_name();
+        let route = match &self.way {
+            Way::Fixed(route) => route.clone(),
+            Way::Drawn(meander) => Route::Own(Polyline {
+                name: self.name.clone(),
+                places: meander.places(&World::open(&world, seed)?, seed)?,
+                passes: 1,
+            }),
+        };
+        Ok(Scenario {
+            route,
+            world,
+            seed,
+            spacing: self.spacing,
+            homing: self.homing,
+            conditions: self.conditions,
+        })
+    }
+
+    /// What tells it from every other scenario: a checksum of its text, and of the file of its world.
+    pub fn fingerprint(&self) -> String {
+        let crc = Crc::<u64>::new(&CRC_64_XZ);
+        let mut digest = crc.digest();
+        digest.update(self.text.as_bytes());
+        if self.has_world_file()
+            && let Ok(world) = fs::read(self.world_name())
+        {
+            digest.update(&world);
+        }
+        format!("{:016x}", digest.finalize())
+    }
+
+    /// The file as it stands.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Where the file of its world is looked for.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    fn has_world_file(&self) -> bool {
+        !World::names().contains(&self.world.as_str())
+    }
+
+    fn world_name(&self) -> String {
+        if self.has_world_file() {
+            self.folder.join(&self.world).display().to_string()
+        } else {
+            self.world.clone()
+        }
+    }
+}
+
+/// The line, from 1, on which a span of a text begins.
+fn line_of(text: &str, span: &Range<usize>) -> usize {
+    let before = text.bytes().take(span.start);
+    1 + before.filter(|byte| *byte == b'\n').count()
+}

@@ -1,0 +1,156 @@
+use super::*;
+
+const GOOD: &str = r#"
+meaning = "Round one corner"
+world = "arena"
+route = "corner"
+seeds = { first = 3, count = 2 }
+
+[recording]
+spacing = 1.0
+
+[conditions]
+wind = { mean = 1.5, turbulence = 0.2 }
+quirks = ["self-acknowledge"]
+
+[[expect]]
+metric = "home_error_m.p95"
+at_most = 0.5
+claim = 31
+reason = "it is short"
+"#;
+
+fn parse(text: &str) -> Result<ScenarioFile, ScenarioError> {
+    ScenarioFile::parse(Path::new("somewhere/corner.toml"), text.to_owned())
+}
+
+/// What is said of the good file with a line of it replaced, and on which line.
+fn refused(line: &str, by: &str) -> (usize, String) {
+    assert!(GOOD.contains(line), "{line}");
+    match parse(&GOOD.replace(line, by)) {
+        Err(ScenarioError::Mistake { line, reason, .. }) => (line, reason),
+        other => panic!("{by}: {other:?}"),
+    }
+}
+
+#[test]
+fn a_file_says_what_is_flown() {
+    let file = parse(GOOD).expect("a scenario");
+    assert_eq!(
+        (file.name.as_str(), file.backend),
+        ("corner", Backend::Native)
+    );
+    assert_eq!(file.seeds.all().collect::<Vec<_>>(), [3, 4]);
+    let scenario = file.scenario(4).expect("a flight");
+    assert_eq!((scenario.route, scenario.seed), (Route::Corner, 4));
+    assert_eq!(
+        (scenario.homing, scenario.spacing.metres()),
+        (Homing::Both, 1.0)
+    );
+    let wind = scenario.conditions.wind.expect("wind");
+    assert_eq!((wind.mean_m_s, wind.turbulence), (1.5, 0.2));
+    assert!(scenario.conditions.quirks.self_acknowledge);
+    assert!(!scenario.conditions.quirks.short_buffer);
+    assert_eq!(file.expectations[0].bounds.at_most, Some(0.5));
+}
+
+#[test]
+fn what_cannot_be_flown_is_refused_with_its_line_and_a_reason() {
+    for (line, by, at, reason) in [
+        (
+            "spacing = 1.0",
+            "spaceing = 1.0",
+            8,
+            "unknown field `spaceing`",
+        ),
+        ("spacing = 1.0", "spacing = 0.25", 8, "steps of 0.1"),
+        ("count = 2", "count = 0", 5, "0 seeds: from 1"),
+        ("\"arena\"", "\"moon\"", 3, "no world `moon`: arena"),
+        ("\"arena\"", "\"moon.toml\"", 3, "moon.toml"),
+        ("\"corner\"", "\"zigzag\"", 4, "unknown variant `zigzag`"),
+        (
+            "\"corner\"",
+            "{ through = { places = [[0, 0]] } }",
+            4,
+            "two places",
+        ),
+        (
+            "\"corner\"",
+            "{ meander = { length = 1e9 } }",
+            4,
+            "from 3 to 2000 m",
+        ),
+        ("mean = 1.5", "mean = 99", 11, "from 0 to 32 m/s"),
+        (
+            "\"self-acknowledge\"",
+            "\"none\"",
+            12,
+            "unknown variant `none`",
+        ),
+        (
+            "home_error_m.p95",
+            "home_error",
+            15,
+            "unknown variant `home_error`",
+        ),
+        ("at_most = 0.5", "", 14, "`at_least` or `at_most`"),
+        (
+            "at_most = 0.5",
+            "at_most = 0.5\nat_least = 0.6",
+            14,
+            "beyond",
+        ),
+        ("at_most = 0.5", "at_most = nan", 14, "no number"),
+        ("claim = 31", "claim = 99", 14, "1 to 36"),
+        ("reason = \"it is short\"", "", 14, "missing field `reason`"),
+        ("spacing = 1.0", "spacing =", 8, ""),
+    ] {
+        let (line, said) = refused(line, by);
+        assert!(said.contains(reason), "{by}: {said}");
+        assert_eq!(line, at, "{by}: {said}");
+    }
+}
+
+#[test]
+fn a_scenario_that_its_board_cannot_fly_is_refused() {
+    let sequence = "route = \"corner\"\nhoming = \"sequence\"\nbackend = \"emulator\"";
+    let (line, reason) = refused("route = \"corner\"", sequence);
+    assert_eq!(line, 5);
+    assert!(reason.contains("native"), "{reason}");
+    let fault = "camera_fault = { name = \"unplugged\", at = 10 }";
+    let (line, reason) = refused("quirks = [\"self-acknowledge\"]", fault);
+    assert_eq!(line, 12);
+    assert!(reason.contains("no camera wires"), "{reason}");
+}
+
+#[test]
+fn an_error_names_file_line_and_reason() {
+    let error = parse(&GOOD.replace("count = 2", "count = 0")).expect_err("no seeds");
+    let said = error.to_string();
+    assert_eq!(said, "somewhere/corner.toml:5: 0 seeds: from 1 to 1000000");
+}
+
+#[test]
+fn a_fingerprint_tells_two_texts_apart() {
+    let one = parse(GOOD).expect("a scenario");
+    let other = parse(&GOOD.replace("1.5", "1.6")).expect("a scenario");
+    assert_eq!(
+        one.fingerprint(),
+        parse(GOOD).expect("the same").fingerprint()
+    );
+    assert_ne!(one.fingerprint(), other.fingerprint());
+}
+
+#[test]
+fn a_way_of_its_own_leads_through_its_places_north_and_east() {
+    let own = "{ through = { places = [[0, 0], [-3, 1]], passes = 2 } }";
+    let file = parse(&GOOD.replace("\"corner\"", own)).expect("a scenario");
+    let route = file.scenario(1).expect("a flight").route.waypoints();
+    let places: Vec<_> = route
+        .waypoints
+        .iter()
+        .map(|way| (way.place.x, way.place.y))
+        .collect();
+    // The link's x is north, its y west.
+    assert_eq!(places, [(0.0, 0.0), (-3.0, -1.0), (0.0, 0.0)]);
+}
