@@ -1,0 +1,299 @@
+//! The scenario library, and the verbs that fly it: fly, sweep, merge, replay, experiments.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use hil::experiments::{self, COMPUTED};
+use hil::flight::FlightError;
+use hil::parallel;
+use hil::scenario::file::{Backend, ScenarioFile};
+use hil::sweep::{FlightFigures, Outcome, Vessel, fly_each};
+use serde_json::Value;
+
+/// Scenarios whose flights take many seconds, some of them minutes: flown by `hil experiments` alone.
+const LONG: [&str; 10] = [
+    "corridor-120m",
+    "corridor-odometry",
+    "corridor-snapshot",
+    "forest-300m",
+    "s-greenhouse",
+    "s-one-metre",
+    "s-soft",
+    "u-odometry",
+    "u-office",
+    "u-wind",
+];
+
+/// What is flown where a test does not care.
+const CORNER: &str = r#"
+meaning = "Round one corner"
+world = "arena"
+route = "corner"
+seeds = { first = 1, count = 3 }
+
+[[expect]]
+metric = "home_error_m.max"
+at_most = 0.5
+reason = "it is short"
+"#;
+
+fn library() -> Vec<ScenarioFile> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    ScenarioFile::open_all(&root.join("../tests/scenarios")).expect("the library is sound")
+}
+
+fn image() -> &'static [u8] {
+    static IMAGE: OnceLock<Vec<u8>> = OnceLock::new();
+    IMAGE.get_or_init(|| {
+        let path = hil::image::build(&|_| ()).expect("the firmware builds");
+        fs::read(path).expect("the image is there")
+    })
+}
+
+fn hil(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hil"))
+        .args(arguments)
+        .output()
+        .expect("the command starts")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", stderr(output)))
+}
+
+/// A folder for one test, gone after it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("hil-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path).expect("a folder for the test");
+        Self(path)
+    }
+
+    fn file(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+
+    fn with(&self, name: &str, text: &str) -> String {
+        fs::write(self.0.join(name), text).expect("a file for the test");
+        self.file(name)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The outcome of a scenario's first seed.
+fn first_flight(file: &ScenarioFile) -> Outcome {
+    let vessel = match file.backend {
+        Backend::Native => Vessel::Native,
+        Backend::Emulator => Vessel::Emulator(image()),
+    };
+    let nothing = |_: &_, _: &FlightFigures| Ok::<_, FlightError>(());
+    let flights = fly_each(
+        &[file.seeds.first],
+        vessel,
+        |seed| file.scenario(seed),
+        nothing,
+        |_| (),
+    );
+    Outcome::of(file, &flights.expect("a flight"))
+}
+
+#[test]
+fn every_short_scenario_of_the_library_keeps_what_it_expects() {
+    let mut files = library();
+    files.retain(|file| !LONG.contains(&file.name.as_str()));
+    assert!(files.len() >= 20, "{} scenarios", files.len());
+    let broken: Vec<String> = parallel::map(&files, first_flight, |_| ())
+        .iter()
+        .flat_map(|outcome| outcome.broken().collect::<Vec<_>>())
+        .collect();
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn every_claim_of_the_paper_has_a_row() {
+    let files = library();
+    let claimed = files.iter().flat_map(|file| &file.expectations);
+    let mut rows: Vec<_> = COMPUTED
+        .iter()
+        .flat_map(|computed| (computed.rows)(2))
+        .collect();
+    let Some(row) = rows.first().cloned() else {
+        panic!("nothing is computed");
+    };
+    rows.extend(claimed.map(|expectation| experiments::Row {
+        claim: expectation.claim,
+        ..row.clone()
+    }));
+    assert_eq!(experiments::unanswered(&rows), Vec::<u8>::new());
+}
+
+#[test]
+fn a_flight_that_fails_is_named_with_both_figures_and_replayed_to_the_byte() {
+    let folder = Folder::new("failed");
+    let hopeless = CORNER.replace("at_most = 0.5", "at_most = 0.01");
+    let file = folder.with("hopeless.toml", &hopeless.replace("count = 3", "count = 1"));
+    let output = hil(&["sweep", &file, "--json", "--out", &folder.file("out")]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let found = &json(&output)["expectations"][0];
+    let error_m = found["found"].as_f64().expect("a figure");
+    let said = stderr(&output);
+    let figure = format!("{error_m:.2} m");
+    for word in ["hopeless", "home error, largest", "at most 0.01 m", &figure] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    assert_eq!(json(&output)["failed_seeds"], serde_json::json!([1]));
+
+    let flight = folder.file("out/hopeless-native-1");
+    let output = hil(&["replay", &flight, "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(json(&output)["reproduced"], true);
+
+    let recording = Path::new(&flight).join("recording.json");
+    let mut bytes = fs::read(&recording).expect("the recording");
+    bytes[1_000] ^= 1;
+    fs::write(&recording, bytes).expect("a changed recording");
+    let output = hil(&["replay", &flight, "--json"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert_eq!(json(&output)["first_difference"], 1_000);
+}
+
+#[test]
+fn shards_put_together_are_the_sweep_and_nothing_else_is_taken_for_one() {
+    let folder = Folder::new("shards");
+    let file = folder.with("corner.toml", CORNER);
+    let out = folder.file("out");
+    let whole = hil(&["sweep", &file, "--json"]);
+    assert_eq!(whole.status.code(), Some(0), "{}", stderr(&whole));
+    for shard in ["1/2", "2/2"] {
+        let output = hil(&["sweep", &file, "--shard", shard, "--out", &out]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    let (one, two) = (
+        folder.file("out/corner-1-of-2.json"),
+        folder.file("out/corner-2-of-2.json"),
+    );
+    let table = folder.file("flights.csv");
+    let merged = hil(&["merge", &two, &one, "--json", "--csv", &table]);
+    assert_eq!(merged.status.code(), Some(0), "{}", stderr(&merged));
+    assert_eq!(merged.stdout, whole.stdout);
+    let table = fs::read_to_string(table).expect("a table");
+    assert_eq!(table.lines().count(), 1 + 3);
+
+    for (shards, reason) in [
+        (vec!["merge", &one], "missing: shard 2/2"),
+        (vec!["merge", &one, &two, &one], "overlap"),
+    ] {
+        let output = hil(&shards);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(reason), "{}", stderr(&output));
+    }
+    let text = fs::read_to_string(&two).expect("a shard");
+    let older = text.replace(env!("CARGO_PKG_VERSION"), "0.0.1");
+    let older = folder.with("older.json", &older);
+    let output = hil(&["merge", &one, &older]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(
+        said.contains("older.json") && said.contains("version"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_sweep_names_its_figures_as_scripts_expect() {
+    let folder = Folder::new("names");
+    let file = folder.with("corner.toml", CORNER);
+    let output = hil(&["sweep", &file, "--flights", "1", "--json"]);
+    let sweep = json(&output);
+    for name in ["flights", "home_within_half_metre"] {
+        assert_eq!(sweep[name], 1, "{name}");
+    }
+    for name in ["p50", "p95", "max"] {
+        assert!(sweep["home_error_m"][name].is_number(), "{name}");
+    }
+    for name in ["cross_track_rms_m", "bytes_per_m"] {
+        assert!(sweep[name].is_number(), "{name}");
+    }
+    assert_eq!(sweep["failed_seeds"], serde_json::json!([]));
+}
+
+#[test]
+fn a_wrong_file_gets_its_line_and_a_reason() {
+    let folder = Folder::new("wrong");
+    let file = folder.with("wrong.toml", &CORNER.replace("count = 3", "count = 0"));
+    for verb in ["fly", "sweep"] {
+        let output = hil(&[verb, &file]);
+        assert_eq!(output.status.code(), Some(2));
+        let said = stderr(&output);
+        assert!(said.contains("wrong.toml:5: 0 seeds"), "{said}");
+    }
+}
+
+#[test]
+fn a_file_is_flown_as_it_says_and_nothing_beside_it() {
+    let folder = Folder::new("fly");
+    let file = folder.with("corner.toml", CORNER);
+    let output = hil(&[
+        "fly",
+        &file,
+        "--seed",
+        "2",
+        "--json",
+        "--out",
+        &folder.file("out"),
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let summary = json(&output);
+    assert_eq!(summary["seed"], 2);
+    assert_eq!(summary["world"], "arena");
+    assert_eq!(summary["backend"], "native");
+    for option in [
+        "--route=u",
+        "--world=hall",
+        "--spacing=1",
+        "--homing=both",
+        "--wind=1",
+    ] {
+        let output = hil(&["fly", &file, option]);
+        assert_eq!(output.status.code(), Some(2), "{option}");
+        assert!(stderr(&output).contains("cannot be used with"), "{option}");
+    }
+}
+
+#[test]
+fn experiments_print_a_row_for_each_claim_they_were_asked_for() {
+    let output = hil(&["experiments", "--only", "board", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let table = json(&output);
+    let rows = table["rows"].as_array().expect("rows");
+    let claims: Vec<_> = rows.iter().map(|row| &row["claim"]).collect();
+    assert_eq!(claims, [1, 3]);
+    for name in ["what", "paper", "ours"] {
+        assert!(rows[0][name].is_string(), "{name}");
+    }
+    assert_eq!(
+        (&rows[0]["seeds"], &rows[0]["kept"]),
+        (&Value::from(0), &Value::from(true))
+    );
+
+    let output = hil(&["experiments", "--only", "moon"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("drift-model"),
+        "{}",
+        stderr(&output)
+    );
+}
