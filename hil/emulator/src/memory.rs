@@ -115,6 +115,13 @@ impl Memory {
         &self.ccm[..]
     }
 
+    /// `len` writable bytes of SRAM; `None` where any of them is outside.
+    pub(crate) fn sram_mut(&mut self, address: u32, len: usize) -> Option<&mut [u8]> {
+        let offset = address.wrapping_sub(SRAM) as usize;
+        let end = offset.checked_add(len)?;
+        self.sram.get_mut(offset..end)
+    }
+
     /// `N` bytes of SRAM: the interpreter's fast path.
     #[inline(always)]
     pub(crate) fn sram_at<const N: usize>(&self, address: u32) -> Option<[u8; N]> {

@@ -68,9 +68,21 @@ impl CodeCache {
     }
 
     /// The instruction at a place: one that was located, or the next one of its run.
+    ///
+    /// Its operands come as one word: a quicker way than to copy the whole to the stack and to read it
+    /// back from there byte by byte.
     #[inline(always)]
     pub fn at(&self, place: usize) -> Instruction {
-        self.instructions[place]
+        let instruction = self.instructions[place];
+        let Instruction { d, n, m, a, .. } = instruction;
+        let [d, n, m, a] = u32::from_le_bytes([d, n, m, a]).to_le_bytes();
+        Instruction {
+            d,
+            n,
+            m,
+            a,
+            ..instruction
+        }
     }
 
     /// Marks the instruction at `pc` for the call tracer.

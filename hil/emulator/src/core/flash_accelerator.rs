@@ -173,7 +173,7 @@ impl FlashAccelerator {
     /// itself, which the pipeline's refill pays for. The next line in sequence is read while the current
     /// one executes, from when the core got that (RM0090 §3.4.2, "Instruction prefetch"): the reads
     /// follow one another, and what the instructions of a line do not fill shows, that cycle included.
-    #[inline(never)]
+    #[inline(always)]
     pub fn enter_line(&mut self, pc: u32, now: u64) -> u64 {
         let line = line_of(pc);
         let in_sequence = line == self.line.wrapping_add(1);
@@ -181,6 +181,11 @@ impl FlashAccelerator {
         if self.wait_states == 0 || line >> 16 != FLASH_REGION {
             return 0;
         }
+        self.fetch_line(line, in_sequence, now)
+    }
+
+    #[inline(never)]
+    fn fetch_line(&mut self, line: u32, in_sequence: bool, now: u64) -> u64 {
         let cost = if self.instructions.holds(line) {
             0
         } else if in_sequence && self.prefetch {

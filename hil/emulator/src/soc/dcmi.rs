@@ -185,10 +185,20 @@ impl Dcmi {
         } else {
             bytes
         };
-        for &byte in wanted {
+        let mut rest = wanted;
+        while let Some((&byte, behind)) = rest.split_first() {
+            if self.fifo.is_empty() {
+                // What DMA takes at once need not go through the FIFO.
+                let stored = dma.store_words(memory, Request::Dcmi, rest);
+                if stored > 0 {
+                    rest = &rest[stored..];
+                    continue;
+                }
+            }
             if !self.take(byte, memory, dma) {
                 return;
             }
+            rest = behind;
         }
         if cropped && self.window.ends_with(number) {
             self.frame_captured(memory, dma);

@@ -81,6 +81,13 @@ impl Dma {
         stored
     }
 
+    /// Moves whole words to memory as [`store`](Self::store) would, one after the other, as far as none
+    /// of them raises a flag. Returns the bytes that were moved; with 0 of them `store` must do it.
+    pub fn store_words(&mut self, memory: &mut Memory, request: Request, bytes: &[u8]) -> usize {
+        let slot = self.serving(request);
+        slot.map_or(0, |slot| self.stream(slot).accept_words(memory, bytes))
+    }
+
     /// Moves one item from memory to the requesting peripheral; `None` as in [`store`](Self::store).
     pub fn load(&mut self, memory: &Memory, request: Request) -> Option<u32> {
         let slot = self.serving(request)?;

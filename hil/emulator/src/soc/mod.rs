@@ -5,6 +5,7 @@
 //! somebody looks; so a run does not depend on how it is sliced. What the model does not have stops
 //! the run with a [`Refusal`].
 
+mod awake;
 mod bridges;
 mod clocks;
 mod dcmi;
@@ -41,6 +42,7 @@ use crate::memory::Memory;
 use crate::time::Nanos;
 use crate::trace::{Event, Recorder, What};
 use crate::wiring::{CameraSignal, Wiring};
+use awake::Awake;
 use bridges::Bridges;
 use clocks::{ClockTree, Rcc};
 use dcmi::Dcmi;
@@ -81,6 +83,7 @@ pub struct Soc<W> {
     debug: Debug,
     outputs: Outputs,
     bridges: Bridges,
+    awake: Awake,
     /// The camera had nothing to say at this instant: it is not asked again before the next.
     camera_silent_at: Option<Nanos>,
     /// The next event, until something may have changed it.
@@ -111,6 +114,7 @@ impl<W: Wiring> Soc<W> {
             debug: Debug::default(),
             outputs: Outputs::new(),
             bridges: Bridges::default(),
+            awake: Awake::default(),
             camera_silent_at: None,
             next: None,
             refusal: None,
@@ -182,6 +186,7 @@ impl<W: Wiring> Soc<W> {
     /// USART `number`, 1..=6.
     fn usart(&mut self, number: u8) -> Option<&mut Usart> {
         self.next = None;
+        self.awake.wake(Block::Usart(number));
         self.usarts.get_mut(usize::from(number).checked_sub(1)?)
     }
 
@@ -241,9 +246,12 @@ impl<W: Wiring> Soc<W> {
         if let Some(next) = self.next {
             return next;
         }
-        let timers = self.timers.iter().map(Timer::next);
-        let usarts = self.usarts.iter().map(|usart| usart.next(&self.time));
-        let i2cs = self.i2cs.iter().map(I2c::next);
+        let awake = self.awake;
+        let timers = awake.timers().map(|index| self.timers[index].next());
+        let usarts = awake
+            .usarts()
+            .map(|index| self.usarts[index].next(&self.time));
+        let i2cs = awake.i2cs().map(|index| self.i2cs[index].next());
         let rest = [self.camera_cycle(), self.watchdog_cycle()];
         let all = timers.chain(usarts).chain(i2cs).chain(rest);
         let next = all.min().unwrap_or(NEVER);
@@ -282,7 +290,8 @@ impl<W: Wiring> Soc<W> {
             return;
         }
         let mut outputs = false;
-        for timer in &mut self.timers {
+        for index in self.awake.timers() {
+            let timer = &mut self.timers[index];
             if timer.next() <= now {
                 timer.sync(now);
                 outputs |= timer.drives_pins();
@@ -291,12 +300,14 @@ impl<W: Wiring> Soc<W> {
         if outputs {
             self.refresh_outputs(now);
         }
-        for usart in &mut self.usarts {
+        for index in self.awake.usarts() {
+            let usart = &mut self.usarts[index];
             if usart.next(&self.time) <= now {
                 usart.advance(now, &self.time, memory, &mut self.dma);
             }
         }
-        for i2c in &mut self.i2cs {
+        for index in self.awake.i2cs() {
+            let i2c = &mut self.i2cs[index];
             if i2c.next() <= now {
                 i2c.advance(reach!(self, memory, now));
             }
@@ -326,9 +337,16 @@ impl<W: Wiring> Soc<W> {
     /// The level of every interrupt line.
     pub fn lines(&self) -> Lines {
         let mut lines = Lines::default();
-        self.timers.iter().for_each(|timer| timer.drive(&mut lines));
-        self.usarts.iter().for_each(|usart| usart.drive(&mut lines));
-        self.i2cs.iter().for_each(|i2c| i2c.drive(&mut lines));
+        let awake = self.awake;
+        awake
+            .timers()
+            .for_each(|index| self.timers[index].drive(&mut lines));
+        awake
+            .usarts()
+            .for_each(|index| self.usarts[index].drive(&mut lines));
+        awake
+            .i2cs()
+            .for_each(|index| self.i2cs[index].drive(&mut lines));
         self.dma.drive(&mut lines);
         self.dcmi.drive(&mut lines);
         self.exti.drive(&mut lines);

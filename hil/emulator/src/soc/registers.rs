@@ -158,6 +158,7 @@ impl<W: Wiring> Soc<W> {
         value: u32,
     ) -> Result<(), Refusal> {
         self.dma.set_time(now);
+        self.awake.wake(block);
         match block {
             Block::Timer(number) => self.write_timer(now, number, offset, value),
             Block::Usart(number) => {

@@ -30,6 +30,11 @@ impl Fifo {
         true
     }
 
+    /// True while there is nothing in it, not even a part of a word.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0 && self.packed == 0
+    }
+
     /// True while a word is unfinished.
     pub fn is_mid_word(&self) -> bool {
         self.packed > 0

@@ -32,6 +32,8 @@ const TRANSFER_COMPLETE: u32 = 1 << 5;
 const ALL_FLAGS: u32 = 0x3d;
 /// Enable bits of S_CR, one below their flags: TEIE, HTIE, TCIE.
 const INTERRUPT_ENABLES: u32 = 0x1c;
+/// Bytes of the longest item.
+const WORD: u32 = 4;
 /// S_FCR.FS: the FIFO is empty.
 const FIFO_EMPTY: u32 = 4 << 3;
 const FCR_RESET: u32 = 0x21;
@@ -92,6 +94,29 @@ impl Stream {
         let done = self.store(memory, item).is_some();
         self.account(done);
         done
+    }
+
+    /// Moves whole words of `bytes` to memory as [`accept`](Self::accept) would, up to the one before
+    /// which a flag rises or the bus may refuse. Returns the bytes that were moved.
+    pub fn accept_words(&mut self, memory: &mut Memory, bytes: &[u8]) -> usize {
+        if self.item_bytes() != WORD || self.cr & MEMORY_INCREMENT == 0 {
+            return 0;
+        }
+        let half = self.programmed / 2;
+        let to_flag = if self.count > half {
+            self.count - half
+        } else {
+            self.count
+        };
+        let words = (bytes.len() as u32 / WORD).min(to_flag.saturating_sub(1));
+        let moved = (words * WORD) as usize;
+        let Some(room) = memory.sram_mut(self.address(), moved) else {
+            return 0;
+        };
+        room.copy_from_slice(&bytes[..moved]);
+        self.offset = self.offset.wrapping_add(words * WORD);
+        self.count -= words;
+        moved
     }
 
     /// Moves one item from memory. `None`: the bus refused, and the stream stopped.

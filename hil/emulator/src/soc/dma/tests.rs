@@ -1,5 +1,7 @@
 //! Claims of RM0090 §10, on the registers.
 
+use proptest::prelude::*;
+
 use super::*;
 use crate::memory::{CCM, SRAM};
 
@@ -190,4 +192,45 @@ fn a_stalled_controller_serves_nobody_and_forgets_nothing() {
     assert_eq!(dma.read(2, S1 + 4).unwrap(), 8);
     dma.stall(2, false);
     assert!(dma.store(&mut memory, Request::Dcmi, 1));
+}
+
+proptest! {
+    #[test]
+    fn words_at_once_leave_what_words_one_by_one_leave(
+        count in 1..12_u32,
+        cr in prop::sample::select(vec![0, CIRCULAR, DOUBLE_BUFFER]),
+        lines in prop::collection::vec(0..9_usize, 0..6),
+    ) {
+        let (mut one_by_one, mut memory) = camera_stream(count, cr);
+        let (mut at_once, mut other_memory) = camera_stream(count, cr);
+        for (line, words) in (1..).zip(lines) {
+            let bytes: Vec<u8> = (0..4 * words as u8).map(|byte| 32 * line + byte).collect();
+            let mut rest = &bytes[..];
+            while let Some((word, behind)) = rest.split_first_chunk() {
+                let stored = at_once.store_words(&mut other_memory, Request::Dcmi, rest);
+                if stored > 0 {
+                    rest = &rest[stored..];
+                } else {
+                    let word = u32::from_le_bytes(*word);
+                    at_once.store(&mut other_memory, Request::Dcmi, word);
+                    rest = behind;
+                }
+            }
+            for word in bytes.as_chunks().0 {
+                one_by_one.store(&mut memory, Request::Dcmi, u32::from_le_bytes(*word));
+            }
+            for register in (0..0x40).step_by(4) {
+                prop_assert_eq!(one_by_one.read(2, register), at_once.read(2, register));
+            }
+            prop_assert!(memory.sram() == other_memory.sram());
+        }
+    }
+}
+
+#[test]
+fn a_line_of_words_is_moved_at_once_up_to_the_next_flag() {
+    let (mut dma, mut memory) = camera_stream(12, 0);
+    // Half of twelve: the sixth word raises a flag.
+    assert_eq!(dma.store_words(&mut memory, Request::Dcmi, &[7; 40]), 20);
+    assert_eq!(dma.store_words(&mut memory, Request::Dcmi, &[7; 40]), 0);
 }
