@@ -66,6 +66,7 @@ impl Parser {
     /// Takes received bytes until they complete a frame or prove that none begins at a start byte.
     ///
     /// `bytes` is moved past what was taken: call again until `None`, then all of it has been taken.
+    #[inline(never)]
     pub fn next_event(&mut self, bytes: &mut &[u8]) -> Option<Event> {
         if self.held.is_empty() {
             self.next_in_place(bytes)

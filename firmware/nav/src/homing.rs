@@ -138,18 +138,20 @@ pub fn home(
     let coarse = f32::from(steps) * BEARING_STEP_RAD;
     rotate(&mut stored, -coarse);
 
-    let mut moved = *current;
+    let mut nearer;
+    let mut view = current;
     let mut displacement = Vector2::zeros();
     let mut rotation = coarse;
     let mut difference = None;
     for left in (0..parameters.iterations.max(1)).rev() {
-        let image = ImageDifference::between(&moved, &stored, &parameters.weights);
+        let image = ImageDifference::between(view, &stored, &parameters.weights);
         let step = image.minimum()?;
         difference.get_or_insert(image.constant());
         displacement += step.xy();
         rotation -= step.z;
         if left > 0 {
-            moved = difference::moved(&moved, step.xy());
+            nearer = difference::moved(view, step.xy());
+            view = &nearer;
             rotate(&mut stored, step.z);
         }
     }
@@ -161,8 +163,11 @@ pub fn home(
     if (vector.rotation - coarse).abs() > parameters.turn_bound {
         return Err(NoVectorReason::IllConditioned);
     }
-    let finite = vector.displacement.norm().is_finite() && vector.rotation.is_finite();
-    if finite && vector.difference.is_finite() {
+    let [x, y] = vector.displacement.into();
+    if [x, y, vector.rotation, vector.difference]
+        .into_iter()
+        .all(f32::is_finite)
+    {
         Ok(vector)
     } else {
         Err(NoVectorReason::NotFinite)

@@ -144,6 +144,7 @@ impl Pilot {
     }
 
     /// Looks at a frame. Once per frame; takes effect with the next STATE.
+    #[inline(never)]
     pub fn on_frame(&mut self, frame: &Frame) -> FrameReport {
         let (horizon, mean_luma) = self.map.horizon_and_band(frame, self.heading);
         self.view = Some(match &self.derotation {

@@ -5,6 +5,8 @@ use embassy_stm32::pac::dma::vals::{Ct, Dir, Dmdis, Pl, Size};
 use embassy_stm32::pac::{DCMI, DMA2};
 use embassy_stm32::{peripherals, rcc};
 
+use sensor::tcm8230::GEOMETRY;
+
 use super::buffers::{Buffer, FRAME_WORDS, address};
 
 const STREAM: usize = 1;
@@ -17,6 +19,11 @@ const FLAG: usize = STREAM % 4;
 /// Polls of a bit that the hardware changes within a few bus cycles. A bound, so that broken
 /// hardware cannot hold the interrupt.
 const POLLS: u32 = 100;
+
+/// Width of the window, pixel clocks: more than any line has. Its register has 14 bits.
+const WINDOW_CLOCKS: u16 = 1 << 14;
+
+const _: () = assert!((WINDOW_CLOCKS as usize) > 2 * GEOMETRY.line_bytes());
 
 /// What the DCMI has to say: the flags that raised its interrupt.
 #[derive(Clone, Copy)]
@@ -33,12 +40,12 @@ impl Events {
         self.0.line_mis()
     }
 
-    /// A frame has ended on the wires.
+    /// VSYNC has fallen on the wires.
     pub fn sync(self) -> bool {
         self.0.vsync_mis()
     }
 
-    /// A frame has ended that was being captured.
+    /// A frame has ended that was being captured: its last line, or VSYNC fell before that.
     pub fn frame(self) -> bool {
         self.0.frame_mis()
     }
@@ -102,8 +109,15 @@ fn start_stream(first: Buffer) {
     stream.cr().modify(|cr| cr.set_en(true));
 }
 
-/// No window: it would hide the bytes that a line has too many.
+/// The window makes a frame end with its last line, and not with VSYNC: then an unfinished word is
+/// filled up and the frame's flag rises (RM0090 §15.5.5, §15.8.3). It has the frame's lines, and is
+/// wider than they are: a window that cut lines off would hide the bytes that one has too many.
 fn start_interface() {
+    DCMI.cwstrt().write(|_| ());
+    DCMI.cwsize().write(|size| {
+        size.set_capcnt(WINDOW_CLOCKS - 1);
+        size.set_vline(GEOMETRY.height - 1);
+    });
     DCMI.ier().write(|enable| {
         enable.set_frame_ie(true);
         enable.set_ovr_ie(true);
@@ -116,6 +130,7 @@ fn start_interface() {
         cr.set_pckpol(true);
         cr.set_vspol(false);
         cr.set_hspol(false);
+        cr.set_crop(true);
         cr.set_enable(true);
     });
     DCMI.cr().modify(|cr| cr.set_capture(true));

@@ -1,14 +1,14 @@
 //! The interrupts of the interface and of its DMA stream, and what they share with the task.
 //!
 //! Every line and every frame is held against the count of words that the DMA has stored, so that
-//! a frame that lost or won a single word on its way is known for it while it is still coming, and
+//! a frame that lost or won a single byte on its way is known for it while it is still coming, and
 //! capture starts afresh with the next one.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use embassy_stm32::interrupt::typelevel::{DCMI, DMA2_STREAM1, Handler, Interrupt};
 use embassy_sync::waitqueue::AtomicWaker;
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant};
 use sensor::tcm8230::GEOMETRY;
 
 use super::buffers::{FRAME_WORDS, LINE_WORDS, buffer_of};
@@ -17,13 +17,16 @@ use super::hardware;
 use super::timing::LINE_GAP;
 use super::watch::Pulse;
 
+/// Lines of a frame.
+const HEIGHT: u32 = GEOMETRY.height as u32;
+
 /// Written by the interrupts and by [`restart`], read by everybody.
 pub struct State {
     /// Whole frames since boot: the number of the newest.
     frames: AtomicU32,
     /// Times the stream was started.
     restarts: AtomicU32,
-    /// Lines of the frame that is coming.
+    /// Lines of the frame that is coming; all of them from its last line to the fall of VSYNC.
     lines: AtomicU32,
     /// Number of the last frame whose buffer was run over by a frame that did not end.
     spoilt: AtomicU32,
@@ -89,14 +92,15 @@ impl Handler<DCMI> for InterruptHandler {
             });
             return;
         }
-        if events.line() {
-            on_line(now);
+        // The last line and the frame end together: of a frame that its line has condemned nothing
+        // more is to be said.
+        let stands = !events.line() || on_line(now);
+        if events.frame() && stands {
+            on_frame_end();
         }
         if events.sync() {
             Pulse::sync(now);
-        }
-        if events.frame() {
-            on_frame_end();
+            STATE.lines.store(0, Ordering::Relaxed);
         }
     }
 }
@@ -112,38 +116,47 @@ impl Handler<DMA2_STREAM1> for DmaInterruptHandler {
     }
 }
 
-/// A line has ended, of a frame that is being captured or of another.
-fn on_line(now: Instant) {
+/// A line has ended, of a frame that is being captured or of another. False: the frame is lost.
+fn on_line(now: Instant) -> bool {
     let since_last = Pulse::line(now);
     let words = hardware::words_taken();
-    if words == 0 {
-        // Of a frame of which nothing is taken.
-        return;
-    }
     let line = STATE.lines.load(Ordering::Relaxed) + 1;
-    STATE.lines.store(line, Ordering::Relaxed);
+    let fault = if line > HEIGHT {
+        // The frame before has been handed over whole; what goes on is another's.
+        Some(Fault::NoVsync)
+    } else if words == 0 {
+        // Of a frame of which nothing is taken.
+        None
+    } else {
+        STATE.lines.store(line, Ordering::Relaxed);
+        fault_of_line(line, words, since_last)
+    };
+    fault.inspect(|fault| lose(*fault)).is_none()
+}
+
+/// What is wrong with a line of the frame that is coming.
+fn fault_of_line(line: u32, words: u32, since_last: Duration) -> Option<Fault> {
+    let expected = line * LINE_WORDS;
     if hardware::is_mid_line() {
         // The next line has begun before this one was looked at: the frame's end decides.
-        return;
-    }
-    let expected = line * LINE_WORDS;
-    if line > u32::from(GEOMETRY.height) {
-        lose(Fault::NoVsync);
+        None
     } else if words < expected {
-        lose(Fault::ShortLine);
+        Some(Fault::ShortLine)
     } else if words > expected {
-        lose(Fault::ExtraBytes);
+        Some(Fault::ExtraBytes)
     } else if line > 1 && since_last > LINE_GAP {
-        lose(Fault::StoppedClock);
+        Some(Fault::StoppedClock)
+    } else {
+        None
     }
 }
 
-/// The frame that was being captured has ended.
+/// The frame that was being captured has ended: with its last line, or with VSYNC before that.
 fn on_frame_end() {
     match hardware::words_taken() {
         FRAME_WORDS => {
             hardware::begin_next_frame();
-            STATE.lines.store(0, Ordering::Relaxed);
+            STATE.lines.store(HEIGHT, Ordering::Relaxed);
             STATE.frames.fetch_add(1, Ordering::Release);
             STATE.waker.wake();
         }

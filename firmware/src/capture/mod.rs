@@ -29,9 +29,20 @@
 //! the frame it returns in. What cannot be seen from an interrupt, because none comes, is seen by
 //! [`Capture::next`], which watches the clock while it waits.
 //!
-//! Frames end with the fall of VSYNC, not with their last line: no window is cropped, since bytes
-//! that a window cuts off are bytes that nobody counts. 1.3 ms of blanking are left then, which is
-//! time enough to start afresh and still catch the next frame.
+//! # When a frame is whole
+//! With its last line, 2.5 ms before VSYNC falls: the interface is given a window of as many lines as
+//! a frame has, wider than they are, and says so at the end of the last of them, when it has filled
+//! up an unfinished word. Then the count of words tells every byte that was lost or won since VSYNC rose,
+//! and the times between the lines tell that they are of one frame: 3.9 ms lie between two, more than any
+//! line may wait for the next. So 96 lines of 64 words each are the whole frame that followed the rise of
+//! VSYNC, and nothing that VSYNC does later makes them less so.
+//!
+//! What comes after the last line belongs to nobody. No byte of it is stored; a line before VSYNC
+//! falls, as of the next frame where VSYNC stays high, is told as [`Fault::NoVsync`] and has capture
+//! start afresh with the frame after, but takes nothing back of the frame that was handed over. Where
+//! the interface says nothing at the last line, for want of a line, the frame ends with VSYNC
+//! and is told as the fault it is. 3.9 ms of blanking are left after a frame, time enough to start afresh
+//! and still catch the next.
 //!
 //! Whoever reads a frame has the time of one more frame before the DMA comes back to its buffer.
 //! [`Frame::read`] says whether that was enough.
@@ -110,8 +121,7 @@ impl Capture {
         self.watch.expect_silence();
     }
 
-    /// What comes next: a whole frame as soon as its last byte is in memory and it is known to be
-    /// its last, or the name of what became of it. While a signal is
+    /// What comes next: a whole frame as soon as its last line is in memory, or the name of what became of it. While a signal is
     /// [expected](Self::expect_signal) the wait ends, with the longest when every frame is lost in
     /// silence: with [`Fault::NoSignal`], after which a signal must be expected anew.
     ///

@@ -67,11 +67,12 @@ fn answer(pilot: &mut Retained, at: Instant, message: &link::Message, outbox: &m
         let events = pilot.on_message(now_ms, message, outbox);
         (events, clocks::cycles().wrapping_sub(start))
     });
+    // The autopilot waits for the answer, nobody for the log.
+    send(outbox);
     events.iter().for_each(log::event);
     if matches!(message, link::Message::State(_)) {
         log::state(cycles);
     }
-    send(outbox);
 }
 
 /// Hands the answers to the transmitter, all or none: half a frame would spoil the one after it.

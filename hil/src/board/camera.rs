@@ -21,8 +21,8 @@ const EXTCLK: Pin = Pin {
 /// The I2C bus that the sensor is on.
 const I2C_BUS: u8 = 2;
 
-/// The edge with which a frame is complete.
-const LAST_LINE: Edge = Edge::Line(HEIGHT - 1);
+/// The edge with which a frame is complete, and the firmware has it.
+pub const LAST_LINE: Edge = Edge::Line(HEIGHT - 1);
 
 /// An image sensor behind a panoramic lens, looking at a world.
 #[derive(Debug)]

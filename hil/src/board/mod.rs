@@ -21,13 +21,13 @@ use origin::Origin;
 /// How long before the flight's time zero the first camera frame starts, nanoseconds.
 ///
 /// The frame period is 39.000 ms (525 lines of 780 pixel clocks at 21 MHz / 2), so the camera's
-/// edges keep their place within the flight loop's millisecond for a whole flight. A frame ends
-/// 37.737 ms after its start; this lead puts that at 0.64 of a millisecond. What the autopilot sends
-/// is through in the first half. So a STATE and a frame never race for the processor, and a board
+/// edges keep their place within the flight loop's millisecond for a whole flight. A frame's last line
+/// ends 35.236 ms after its start; this lead puts that at 0.65 of a millisecond. What the autopilot
+/// sends is through in the first half. So a STATE and a frame never race for the processor, and a board
 /// with a processor sees them in the same order as one without. None of the camera's edges is nearer
 /// than 10 us to the border of a millisecond, where the pose changes. In the world the two clocks
 /// are independent, and any phase is as good as another.
-pub const CAMERA_LEAD_NS: u64 = 100_000;
+pub const CAMERA_LEAD_NS: u64 = 584_000;
 
 /// Something that runs the firmware's logic, stepped a millisecond at a time.
 ///

@@ -2,12 +2,11 @@
 //! camera's timing kept so that it sees what the emulated board sees, in the same order.
 
 use fake_sensors::camera::Pose;
-use fake_sensors::camera::tcm8230::Edge;
 use link::{Event, Frame, Parser, Refused};
 use nav::{LensCalibration, RecordError};
 use pilot::{Outbox, Pilot};
 
-use super::camera::Camera;
+use super::camera::{Camera, LAST_LINE};
 use super::{Board, BoardError, BoardFigures, CAMERA_LEAD_NS, FirmwareLog, FrameLog};
 
 /// The sensor's clock on the flight board, hertz.
@@ -108,8 +107,7 @@ impl Native {
             .filter(|due_ns| *due_ns < until_ns)
         {
             let edge = self.camera.take_edge(due_ns);
-            // The firmware waits for the end of the vertical sync, and so does this.
-            if edge == Some(Edge::FrameEnd) && self.camera.frames_sent() > self.frames_processed {
+            if edge == Some(LAST_LINE) && self.camera.frames_sent() > self.frames_processed {
                 self.process_frame(due_ns);
             }
         }

@@ -74,7 +74,7 @@ const SHORT_LINE: usize = HEIGHT / 2;
 /// A frame as the camera meant it.
 #[derive(Clone, Debug)]
 pub struct Sent {
-    /// When VSYNC fell after it.
+    /// When its last line was out.
     pub ended: Nanos,
     /// No wire was tampered with while it was sent.
     pub intact: bool,
@@ -134,12 +134,12 @@ impl Sabotaged {
         &mut self.camera
     }
 
-    /// Frames whose end the camera has sent since power-on, whatever became of them.
+    /// Times that the camera let VSYNC fall after a frame since power-on, whatever became of it.
     pub fn frames_ended(&self) -> u64 {
         self.frames_ended
     }
 
-    /// The last of them.
+    /// The last frame whose last line the camera has sent.
     pub fn last_sent(&self) -> Option<&Sent> {
         self.last.as_ref()
     }
@@ -152,10 +152,15 @@ impl Sabotaged {
     /// From `now` on this is wrong with the wires.
     pub fn begin(&mut self, now: Nanos, sabotage: Sabotage) {
         self.sabotage = Some(sabotage);
-        self.tampered |= self.vsync;
+        // What happens to lines is seen when they are struck.
+        self.tampered |= self.vsync_at_chip() != self.vsync;
         match sabotage {
-            Sabotage::ClockStopped => self.drive_clock(now, None),
+            Sabotage::ClockStopped => {
+                self.tampered = true;
+                self.drive_clock(now, None);
+            }
             Sabotage::Unplugged => {
+                self.tampered = true;
                 self.drive_clock(now, None);
                 for (pin, _) in self.inputs.clone() {
                     self.camera.pin_changed(now, pin, false);
@@ -226,8 +231,8 @@ impl Sabotaged {
         })
     }
 
-    fn frame_ended(&mut self, now: Nanos) {
-        self.frames_ended += 1;
+    /// The last line is out: the frame is what it is, whatever becomes of VSYNC.
+    fn frame_sent(&mut self, now: Nanos) {
         self.last = Some(Sent {
             ended: now,
             intact: !self.tampered,
@@ -253,6 +258,9 @@ impl Sabotaged {
         if framed != Some(LINE_BYTES) {
             self.tampered = true;
             self.line_struck = Some(now);
+        }
+        if line == HEIGHT - 1 {
+            self.frame_sent(now);
         }
         let bytes = &self.camera.frame()[line * LINE_BYTES..][..LINE_BYTES];
         self.line.clear();
@@ -319,8 +327,7 @@ impl Wiring for Sabotaged {
             Edge::Line(line) => self.line_signal(now, line),
             Edge::FrameEnd => {
                 self.vsync = false;
-                self.tampered |= self.vsync_at_chip() == self.vsync_seen;
-                self.frame_ended(now);
+                self.frames_ended += 1;
                 self.vsync_signal()
             }
         }

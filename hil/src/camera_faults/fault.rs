@@ -4,7 +4,7 @@ use std::fmt;
 
 use clap::ValueEnum;
 use emulator::time::Nanos;
-use fake_sensors::camera::LINE_BYTES;
+use fake_sensors::camera::{HEIGHT, LINE_BYTES};
 
 use super::bench::{Bench, BenchError};
 use crate::board::sabotage::Sabotage;
@@ -24,6 +24,8 @@ const A_FRAME: Nanos = Nanos::from_millis(39);
 /// The lines that are tampered with, by phase.
 const FIRST_LINE: usize = 4;
 const LINE_STEP: usize = 11;
+/// The last line of a frame.
+const LAST_LINE: usize = HEIGHT - 1;
 /// From a line that loses bytes to the one that wins them.
 const SLIP_LINES: usize = 10;
 /// The bytes of one synchronisation code at each end of a line.
@@ -49,6 +51,8 @@ pub enum CameraFault {
     ShortLine,
     /// A line ends one byte early
     ShortByByte,
+    /// The last line ends two pixels early
+    ShortLastLine,
     /// A line is not framed at all
     MissingLine,
     /// A line brings eight bytes too many
@@ -57,6 +61,8 @@ pub enum CameraFault {
     CodesOn,
     /// A line brings one byte too many
     ExtraByte,
+    /// The last line brings one byte too many
+    ExtraLastByte,
     /// A line loses two pixels and a later one of the same frame wins two
     ShiftedLines,
     /// The bus is taken from the DMA for a millisecond
@@ -117,10 +123,12 @@ impl CameraFault {
             Self::LostHsync => in_frame(Sabotage::HsyncLow, long),
             Self::ShortLine => over_a_frame(bench, one_line(line, LINE_BYTES - 4)),
             Self::ShortByByte => over_a_frame(bench, one_line(line, LINE_BYTES - 1)),
+            Self::ShortLastLine => over_a_frame(bench, one_line(LAST_LINE, LINE_BYTES - 4)),
             Self::MissingLine => over_a_frame(bench, one_line(line, 0)),
             Self::ExtraBytes => over_a_frame(bench, one_line(line, LINE_BYTES + CODES)),
             Self::CodesOn => in_frame(every_line(LINE_BYTES + CODES), long),
             Self::ExtraByte => over_a_frame(bench, one_line(line, LINE_BYTES + 1)),
+            Self::ExtraLastByte => over_a_frame(bench, one_line(LAST_LINE, LINE_BYTES + 1)),
             Self::ShiftedLines => over_a_frame(
                 bench,
                 Sabotage::Slip {

@@ -3,7 +3,7 @@
 /// How many samples of the band have each luma.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LumaHistogram {
-    counts: [u16; 256],
+    counts: [u32; 256],
 }
 
 /// What is known of a sensor's luma.
@@ -35,11 +35,11 @@ impl LumaHistogram {
         Self { counts: [0; 256] }
     }
 
-    /// Counts a sample.
+    /// Counts a sample, of fewer than 2^32.
     pub fn add(&mut self, luma: u8) {
         // A byte indexes 256 counters: the compiler sees that there is nothing to check.
         let count = &mut self.counts[usize::from(luma)];
-        *count = count.saturating_add(1);
+        *count = count.wrapping_add(1);
     }
 
     /// The factor k on the luma above black that brings the mean to what is wanted: in the model
@@ -52,17 +52,18 @@ impl LumaHistogram {
     /// exactly what is missing, where one that is still clipped would not.
     pub(super) fn correction(&self, scale: &LumaScale) -> Option<Correction> {
         let (below_white, clipped) = self.counts.split_at(usize::from(scale.clipped_from));
-        let count = |counts: &[u16]| -> u32 { counts.iter().map(|&count| u32::from(count)).sum() };
-        let clipped = count(clipped);
-        let total = clipped + count(below_white);
+        let clipped: u32 = clipped.iter().sum();
+        let full = FULL - scale.black;
+        // In integers as far as it goes: exact, and a few cycles for each luma.
+        let of_luma = below_white.iter().zip(0_u32..);
+        let (seen, luma) = of_luma.fold((0, 0), |(seen, sum), (count, luma)| {
+            (seen + count, sum + luma * count)
+        });
+        let total = clipped + seen;
         if total == 0 {
             return None;
         }
-        let full = FULL - scale.black;
-        // In integers as far as it goes: exact, and two cycles for each luma.
-        let luma = |(luma, &count): (usize, &u16)| luma as u32 * u32::from(count);
-        let luma: u32 = below_white.iter().enumerate().map(luma).sum();
-        let visible = luma as f32 - scale.black * (total - clipped) as f32;
+        let visible = luma as f32 - scale.black * seen as f32;
         let wanted = (scale.wanted - scale.black) * total as f32 - clipped as f32 * full;
         let factor = if visible < wanted {
             upwards(below_white, scale.black, wanted, visible)
@@ -79,26 +80,19 @@ impl LumaHistogram {
 /// The k of at least 1 with Σ min(255 - b, k (Y - b)) = `wanted` over the samples below white, whose
 /// Σ (Y - b) is `visible`: the brightest clip first, so they are taken out one luma after the other
 /// until the rest stays below white.
-fn upwards(below_white: &[u16], black: f32, mut wanted: f32, mut visible: f32) -> f32 {
+fn upwards(below_white: &[u32], black: f32, mut wanted: f32, mut visible: f32) -> f32 {
     let full = FULL - black;
-    for (count, light) in lights(below_white, black).rev() {
-        if count == 0.0 {
-            continue;
-        }
+    let seen = below_white.iter().enumerate().rev();
+    for (luma, &count) in seen.filter(|(_, count)| **count > 0) {
+        let light = luma as f32 - black;
         // Two products instead of a quotient: `visible` may be zero.
         if light <= 0.0 || wanted * light < full * visible {
             break;
         }
-        wanted -= count * full;
-        visible -= count * light;
+        wanted -= count as f32 * full;
+        visible -= count as f32 * light;
     }
     wanted / visible.max(f32::MIN_POSITIVE)
-}
-
-/// How many samples have how much luma above black.
-fn lights(below_white: &[u16], black: f32) -> impl DoubleEndedIterator<Item = (f32, f32)> {
-    let of_luma = below_white.iter().enumerate();
-    of_luma.map(move |(luma, &count)| (f32::from(count), luma as f32 - black))
 }
 
 impl Default for LumaHistogram {

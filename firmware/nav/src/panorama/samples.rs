@@ -78,13 +78,12 @@ impl SampleTable {
         if frame.len() < self.frame_bytes {
             return;
         }
-        for index in self
-            .indices
-            .iter()
-            .flat_map(|[upper, _]| &upper[..BAND_ROWS])
-        {
+        for [[band @ .., _, _], _] in &self.indices {
+            // All loads of a bearing one after the other: then none waits for the one before.
             // SAFETY: as above.
-            pass(unsafe { *frame.get_unchecked(usize::from(*index)) });
+            let band: [u8; BAND_ROWS] =
+                band.map(|index| unsafe { *frame.get_unchecked(usize::from(index)) });
+            band.into_iter().for_each(&mut pass);
         }
     }
 
