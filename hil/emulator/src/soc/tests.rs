@@ -351,3 +351,13 @@ fn a_run_does_not_depend_on_how_it_is_sliced() {
         assert!(busy_run(slice) == whole, "slices of {slice} cycles");
     }
 }
+
+#[test]
+fn bytes_for_a_usart_that_nobody_has_set_up_are_lost_and_counted() {
+    let mut bench = Bench::at_full_speed();
+    let now = bench.soc.time().nanos(bench.now);
+    bench.soc.usart_send(3, now, b"nobody listens");
+    bench.pass(Nanos::from_millis(5));
+    let counters = bench.soc.usart_counters(3);
+    assert_eq!((counters.lost, counters.received), (14, 0));
+}
