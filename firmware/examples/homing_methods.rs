@@ -21,7 +21,7 @@ use nav::methods::{
     Fourier, Homeward, HomingMethod, Luma, Memory, Mfdid, Resolution, Search, WarpSearch, presets,
 };
 use panic_probe as _;
-use static_cell::StaticCell;
+use static_cell::ConstStaticCell;
 
 /// The current view, bits of floats.
 #[unsafe(no_mangle)]
@@ -40,7 +40,7 @@ static METHOD: AtomicU32 = AtomicU32::new(0);
 static ANSWER: [AtomicU32; 4] = [const { AtomicU32::new(0) }; 4];
 
 /// The tables of the largest fill a fifth of the memory: they have a place of their own.
-static WARPS: StaticCell<WarpSearch> = StaticCell::new();
+static WARPS: ConstStaticCell<WarpSearch> = ConstStaticCell::new(WarpSearch::blank());
 
 /// One method at a time.
 #[expect(
@@ -83,7 +83,7 @@ impl<'a> Method<'a> {
 #[cortex_m_rt::entry]
 fn main() -> ! {
     flight_flash::set_up();
-    let warps = WARPS.init_with(|| WarpSearch::new(presets::default(16, 0)));
+    let warps = WARPS.take();
     loop {
         let wanted = METHOD.load(Ordering::Acquire);
         if wanted == 0 {

@@ -22,6 +22,7 @@ pub mod folder;
 pub mod gdb;
 pub mod homing_check;
 pub mod homing_cycles;
+pub mod homing_test;
 pub mod image;
 pub mod import_cf;
 pub mod link_check;

@@ -21,6 +21,12 @@ impl Pair {
         Self(first.cast_unsigned() as u32 | (second.cast_unsigned() as u32) << 16)
     }
 
+    /// The first and the second.
+    #[inline(always)]
+    pub(crate) const fn halves(self) -> [i16; 2] {
+        [self.0 as i16, (self.0 >> 16) as i16]
+    }
+
     /// The second before the first.
     #[inline(always)]
     pub(crate) const fn swapped(self) -> Self {
@@ -87,13 +93,15 @@ mod cortex_m4 {
 
 #[cfg(not(all(target_arch = "arm", target_os = "none")))]
 mod plain {
-    fn halves(word: u32) -> [i16; 2] {
-        [word as i16, (word >> 16) as i16]
+    use super::Pair;
+
+    fn halves(word: u32) -> [i32; 2] {
+        Pair(word).halves().map(i32::from)
     }
 
     fn each(a: u32, b: u32, operation: fn(i16, i16) -> i16) -> u32 {
-        let ([a, c], [b, d]) = (halves(a), halves(b));
-        super::Pair::new(operation(a, b), operation(c, d)).0
+        let ([a, c], [b, d]) = (Pair(a).halves(), Pair(b).halves());
+        Pair::new(operation(a, b), operation(c, d)).0
     }
 
     pub(super) fn sadd16(a: u32, b: u32) -> u32 {
@@ -105,7 +113,7 @@ mod plain {
     }
 
     pub(super) fn smlad(a: u32, b: u32, sum: i32) -> i32 {
-        let ([a, c], [b, d]) = (halves(a).map(i32::from), halves(b).map(i32::from));
+        let ([a, c], [b, d]) = (halves(a), halves(b));
         sum.wrapping_add(a * b).wrapping_add(c * d)
     }
 }

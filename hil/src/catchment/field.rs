@@ -14,7 +14,7 @@ const STANDSTILL_CELLS: f32 = 0.25;
 /// How near counts as home, metres: the paper's runs end within half a metre (Fig. 4).
 pub const NEAR_M: [f64; 2] = [0.5, 0.25];
 
-/// Unit homing vectors by position of a grid; none where there is no view or no vector.
+/// Homing vectors by position of a grid, of length one where trajectories follow them; none where there is no view or no vector.
 pub type Field = Vec<Option<[f32; 2]>>;
 
 /// Where a robot that starts at `start_m` ends by following the interpolated vectors.
@@ -26,7 +26,7 @@ pub fn end_of(grid: &Grid, field: &Field, start_m: [f32; 2]) -> [f32; 2] {
 
 /// Follows the vectors from `start_m`, telling of each position.
 pub fn follow(grid: &Grid, field: &Field, start_m: [f32; 2], mut visit: impl FnMut([f32; 2])) {
-    let mut cell = [0, 1].map(|axis| (start_m[axis] - grid.origin_m[axis]) / grid.spacing_m);
+    let mut cell = grid.cell(start_m);
     let last = [grid.columns, grid.rows].map(|count| (count - 1) as f32);
     let mut glanced = cell;
     for step in 1..=MOST_STEPS {
@@ -46,6 +46,11 @@ pub fn follow(grid: &Grid, field: &Field, start_m: [f32; 2], mut visit: impl FnM
             glanced = cell;
         }
     }
+}
+
+/// The vector at a place, by interpolation; none where there is none round it.
+pub fn at(grid: &Grid, field: &Field, at_m: [f32; 2]) -> Option<[f32; 2]> {
+    interpolated(grid, field, grid.cell(grid.held(at_m)))
 }
 
 /// The vector at a place in cells; corners without one do not count. None if there is none at all.

@@ -44,6 +44,17 @@ impl Grid {
         [0, 1].map(|axis| self.origin_m[axis] + cell[axis] as f32 * self.spacing_m)
     }
 
+    /// A place in spacings from the first position.
+    pub fn cell(&self, at_m: [f32; 2]) -> [f32; 2] {
+        [0, 1].map(|axis| (at_m[axis] - self.origin_m[axis]) / self.spacing_m)
+    }
+
+    /// The nearest place that is on the grid.
+    pub fn held(&self, at_m: [f32; 2]) -> [f32; 2] {
+        let last = self.position_m(self.free.len() - 1);
+        [0, 1].map(|axis| at_m[axis].clamp(self.origin_m[axis], last[axis]))
+    }
+
     /// The free positions.
     pub fn free_positions(&self) -> impl Iterator<Item = usize> {
         (0..self.free.len()).filter(|index| self.free[*index])

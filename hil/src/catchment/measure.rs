@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::condition::Condition;
 use super::field::{self, Field};
+use super::judge;
 use super::settings::{Method, Settings};
 use super::survey::{Current, Survey};
 use crate::parallel;
@@ -33,6 +34,13 @@ pub struct Row {
     pub area_per_byte: f64,
     /// Standard error of `area_m2` over the snapshots.
     pub stderr_m2: f64,
+    /// How far from the snapshot a run ends that starts 0.3 m from it, mean, metres.
+    pub end_error_m: f64,
+    /// Standard error of `end_error_m` over the snapshots.
+    pub end_stderr_m: f64,
+    /// How well the quality of a vector tells whether it points to within 90 degrees: the area under
+    /// the curve of hits over false alarms, 0.5 by chance. None where all do, or none does.
+    pub roc: Option<f64>,
     /// How many there are.
     pub snapshots: usize,
     /// The places on which the settings were chosen, with spaces between; `shipped` where they are
@@ -60,57 +68,78 @@ pub type Area = [f64; 2];
 
 /// Areas of every snapshot of a survey.
 pub fn areas(survey: &Survey, settings: &Settings, stride: usize) -> Vec<Area> {
-    match settings {
-        Settings::Fourier(parameters) => by(survey, &Fourier::new(*parameters), stride),
-        Settings::Search(parameters) => by(survey, &Search::new(*parameters), stride),
-        Settings::Mfdid(parameters) => by(survey, &Mfdid::new(*parameters), stride),
-        Settings::Warp(parameters) => by(survey, &WarpSearch::new(*parameters), stride),
-    }
-}
-
-fn by<M: HomingMethod>(survey: &Survey, method: &M, stride: usize) -> Vec<Area> {
-    let fields = fields(survey, method);
-    survey
-        .goals
-        .iter()
-        .zip(&fields)
-        .map(|(goal, field)| {
+    let found = vectors_with(survey, settings);
+    let goals = survey.goals.iter().zip(&found);
+    goals
+        .map(|(goal, vectors)| {
             let goal_m = survey.grid.position_m(goal.index);
-            field::areas_m2(&survey.grid, field, goal_m, stride)
+            field::areas_m2(&survey.grid, &vectors.directions(), goal_m, stride)
         })
         .collect()
 }
 
+/// The homing vectors to one snapshot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vectors {
+    /// By position of the grid, in units of the surroundings' distance: where a robot goes that
+    /// follows them by its own north, which may be wrong.
+    pub moves: Field,
+    /// How far each can be trusted, as the method says.
+    pub qualities: Vec<f32>,
+}
+
+impl Vectors {
+    /// Unit vectors.
+    pub fn directions(&self) -> Field {
+        let unit = |[x, y]: [f32; 2]| {
+            let length = libm::hypotf(x, y);
+            (length > 0.0).then(|| [x / length, y / length])
+        };
+        self.moves.iter().map(|vector| unit((*vector)?)).collect()
+    }
+}
+
+/// The homing vectors to each snapshot by a method with these settings.
+pub fn vectors_with(survey: &Survey, settings: &Settings) -> Vec<Vectors> {
+    match settings {
+        Settings::Fourier(parameters) => vectors(survey, &Fourier::new(*parameters)),
+        Settings::Search(parameters) => vectors(survey, &Search::new(*parameters)),
+        Settings::Mfdid(parameters) => vectors(survey, &Mfdid::new(*parameters)),
+        Settings::Warp(parameters) => vectors(survey, &WarpSearch::new(*parameters)),
+    }
+}
+
 /// The homing vectors to each snapshot.
-pub fn fields<M: HomingMethod>(survey: &Survey, method: &M) -> Vec<Field> {
+pub fn vectors<M: HomingMethod>(survey: &Survey, method: &M) -> Vec<Vectors> {
     let memories: Vec<_> = survey
         .goals
         .iter()
         .map(|goal| method.remember(&goal.view))
         .collect();
-    let mut fields = vec![vec![None; survey.currents.len()]; memories.len()];
+    let none = Vectors {
+        moves: vec![None; survey.currents.len()],
+        qualities: vec![0.0; survey.currents.len()],
+    };
+    let mut found = vec![none; memories.len()];
     for (index, current) in survey.currents.iter().enumerate() {
         let Some(current) = current else {
             continue;
         };
         let seen = method.see(&current.view);
-        for (field, memory) in fields.iter_mut().zip(&memories) {
-            let way = method.home(&seen, memory);
-            field[index] = way.ok().and_then(|way| direction(current, &way));
+        for (found, memory) in found.iter_mut().zip(&memories) {
+            if let Ok(way) = method.home(&seen, memory) {
+                found.moves[index] = Some(by_its_north(current, &way));
+                found.qualities[index] = way.quality;
+            }
         }
     }
-    fields
+    found
 }
 
-/// Where a robot goes that follows a vector: by its own north, which may be wrong.
-fn direction(current: &Current, way: &Homeward) -> Option<[f32; 2]> {
+fn by_its_north(current: &Current, way: &Homeward) -> [f32; 2] {
     let [x, y] = [way.displacement.x, way.displacement.y];
-    let length = libm::hypotf(x, y);
-    if length <= 0.0 {
-        return None;
-    }
     let (sin, cos) = (libm::sinf(current.turn_rad), libm::cosf(current.turn_rad));
-    Some([(cos * x - sin * y) / length, (sin * x + cos * y) / length])
+    [cos * x - sin * y, sin * x + cos * y]
 }
 
 /// The best settings of each task on the surveys, by the mean area within 0.5 m. `done` hears how many
@@ -177,13 +206,22 @@ pub fn evaluate(
 }
 
 fn row(survey: &Survey, task: &Task, settings: &Settings, tuned_on: &str) -> Row {
-    let areas = areas(survey, settings, 1);
-    let area_m2 = mean(areas.iter().map(|area| area[0]));
-    let squares = areas
+    let found = vectors_with(survey, settings);
+    let goals = survey
+        .goals
         .iter()
-        .map(|area| (area[0] - area_m2) * (area[0] - area_m2));
+        .map(|goal| survey.grid.position_m(goal.index));
+    let goals: Vec<_> = goals.zip(&found).collect();
+    let areas: Vec<Area> = goals
+        .iter()
+        .map(|(goal_m, vectors)| field::areas_m2(&survey.grid, &vectors.directions(), *goal_m, 1))
+        .collect();
+    let end_errors_m = goals
+        .iter()
+        .map(|(goal_m, vectors)| judge::end_error_m(&survey.grid, &vectors.moves, *goal_m));
+    let end_errors_m: Vec<f64> = end_errors_m.collect();
+    let area_m2 = mean(areas.iter().map(|area| area[0]));
     let snapshots = areas.len();
-    let variance = squares.sum::<f64>() / (snapshots.max(2) - 1) as f64;
     let free = survey.grid.free_positions().count();
     Row {
         world: survey.place.clone(),
@@ -193,7 +231,10 @@ fn row(survey: &Survey, task: &Task, settings: &Settings, tuned_on: &str) -> Row
         area_m2,
         area25_m2: mean(areas.iter().map(|area| area[1])),
         area_per_byte: area_m2 / f64::from(task.bytes),
-        stderr_m2: (variance / snapshots.max(1) as f64).sqrt(),
+        stderr_m2: standard_error(areas.iter().map(|area| area[0])),
+        end_error_m: mean(end_errors_m.iter().copied()),
+        end_stderr_m: standard_error(end_errors_m.iter().copied()),
+        roc: judge::roc(&survey.grid, &goals),
         snapshots,
         tuned_on: match task.method {
             Method::Default => "shipped".to_owned(),
@@ -239,6 +280,18 @@ fn in_words(settings: &Settings) -> String {
         ),
     };
     text
+}
+
+/// Standard error of the mean.
+fn standard_error(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let middle = mean(values.clone());
+    let (mut squares, mut count) = (0.0, 0_u32);
+    for value in values {
+        squares += (value - middle) * (value - middle);
+        count += 1;
+    }
+    let variance = squares / f64::from(count.max(2) - 1);
+    (variance / f64::from(count.max(1))).sqrt()
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {

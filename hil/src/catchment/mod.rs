@@ -11,9 +11,11 @@
 pub mod condition;
 pub mod field;
 pub mod grid;
+pub mod judge;
 pub mod measure;
 pub mod pictures;
 pub mod place;
+pub mod plots;
 pub mod render;
 pub mod settings;
 pub mod survey;
@@ -23,3 +25,6 @@ pub use measure::{Area, Row, Task, evaluate, tune};
 pub use place::{Named, Place, PlaceError};
 pub use settings::{Method, Settings};
 pub use survey::Survey;
+
+#[cfg(test)]
+mod tests;

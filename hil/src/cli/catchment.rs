@@ -1,6 +1,7 @@
 //! `hil catchment`: from where a snapshot of so many bytes brings a robot home.
 
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
@@ -8,7 +9,8 @@ use serde::Serialize;
 use super::Failure;
 use super::console::Console;
 use crate::catchment::settings::parse_bytes;
-use crate::catchment::{self, Condition, Method, Named, Place, Row, Survey, Task, measure};
+use crate::catchment::{self, Condition, Method, Named, Place, Row, Survey, Task, measure, plots};
+use crate::folder;
 
 /// Options of `hil catchment`.
 #[derive(Debug, Args)]
@@ -17,6 +19,7 @@ use crate::catchment::{self, Condition, Method, Named, Place, Row, Survey, Task,
     hil catchment --world office --method fourier,default --bytes 6,16 --json\n  \
     hil catchment --world hdri:room.hdr,7.3x6.9x3 --condition none,heading:30,person\n  \
     hil catchment --world images:gaffin --csv table.csv\n  \
+    hil catchment --out fig3                         with the pictures of Fig. 3\n  \
     hil catchment --world hall --tune-on office --tune-on arena-panels\n\n\
     Worlds: a name of the library's (`hil look` lists them) with #SEED behind it if wanted, a TOML file,\n\
     hdri:FILE[,WxLxH] (a panorama on the faces of a room, metres) or images:DIR (pictures on a grid with a\n\
@@ -51,6 +54,9 @@ pub struct Arguments {
     /// Ends with one JSON object: rows
     #[arg(long)]
     json: bool,
+    /// Folder for the pictures of Fig. 3, two of each place and condition: maps of one snapshot, and areas over bytes
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
     /// The table as a file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -63,6 +69,9 @@ struct Outcome {
 }
 
 pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
+    if let Some(out) = &arguments.out {
+        folder::prepare(out).map_err(|error| unwritable(out, &error))?;
+    }
     let worlds = open_all(&arguments.worlds, console)?;
     let training = open_all(&arguments.training, console)?;
     let mut rows = Vec::new();
@@ -83,14 +92,17 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
                 None => (tune(&[&survey], &tasks, console), place.name.clone()),
             };
             let mut progress = console.progress("Measuring", tasks.len() as u64);
-            rows.extend(catchment::evaluate(
-                &survey,
-                &tasks,
-                &settings,
-                &tuned_on,
-                |done| progress.set(done as u64, || format!("{done} of {} areas", tasks.len())),
-            ));
+            let measured = catchment::evaluate(&survey, &tasks, &settings, &tuned_on, |done| {
+                progress.set(done as u64, || format!("{done} of {} areas", tasks.len()));
+            });
             progress.finish();
+            if let Some(out) = &arguments.out {
+                let files = plots::write(out, &survey, &tasks, &settings, &measured);
+                for file in files.map_err(|error| unwritable(out, &error))? {
+                    console.status("Picture", &file.display().to_string());
+                }
+            }
+            rows.extend(measured);
         }
     }
     if let Some(file) = &arguments.csv {
@@ -135,6 +147,10 @@ impl Arguments {
         progress.finish();
         Ok(survey)
     }
+}
+
+fn unwritable(folder: &Path, error: &io::Error) -> String {
+    format!("{}: {error}", folder.display())
 }
 
 fn open_all(named: &[Named], console: &Console) -> Result<Vec<Place>, Failure> {
@@ -185,17 +201,20 @@ fn in_words(rows: &[Row]) -> String {
                 row.world, row.condition, row.free_m2, row.snapshots
             ));
             lines.push(
-                "bytes  method        within 0.5 m      0.25 m   m2/byte  settings".to_owned(),
+                "bytes  method        within 0.5 m      0.25 m   m2/byte  end error      ROC  settings"
+                    .to_owned(),
             );
         }
         lines.push(format!(
-            "{:>5}  {:<12} {:>6.1} +- {:<4.1} m2 {:>6.1} m2 {:>9.2}  {}",
+            "{:>5}  {:<12} {:>6.1} +- {:<4.1} m2 {:>6.1} m2 {:>9.2} {:>8.3} m {:>8}  {}",
             row.bytes,
             row.method,
             row.area_m2,
             row.stderr_m2,
             row.area25_m2,
             row.area_per_byte,
+            row.end_error_m,
+            row.roc.map_or("-".to_owned(), |roc| format!("{roc:.3}")),
             row.settings
         ));
     }

@@ -24,6 +24,7 @@ mod flash;
 mod fly;
 mod homing_check;
 mod homing_cycles;
+mod homing_test;
 mod import_cf;
 mod info;
 mod link_check;
@@ -107,6 +108,8 @@ enum Verb {
     HomingCheck(homing_check::Arguments),
     /// Measures what each homing method costs on the emulated board
     HomingCycles(homing_cycles::Arguments),
+    /// Flies home to one snapshot from nine starts, in closed loop
+    HomingTest(homing_test::Arguments),
     /// Draws the report of a real flight from the logs of cfclient
     ImportCf(import_cf::Arguments),
     /// Holds the link's codec against records of another implementation's
@@ -157,6 +160,7 @@ pub fn main() -> ExitCode {
         Verb::Build(arguments) => build::run(&arguments, &console),
         Verb::HomingCheck(arguments) => homing_check::run(&arguments, &console),
         Verb::HomingCycles(arguments) => homing_cycles::run(&arguments, &console),
+        Verb::HomingTest(arguments) => homing_test::run(&arguments, &console),
         Verb::ImportCf(arguments) => import_cf::run(&arguments, &console),
         Verb::LinkCheck(arguments) => link_check::run(&arguments, &console),
         Verb::Size(arguments) => size::run(&arguments, &console),

@@ -68,7 +68,11 @@ pub struct Aircraft {
 impl Aircraft {
     /// On the ground at the start of the route, facing north.
     pub fn new(scenario: &Scenario, route: &app::Route) -> Self {
-        let script = scenario.script();
+        Self::flying(scenario, route, scenario.script())
+    }
+
+    /// On the ground at the start of the route, facing north, to fly another script.
+    pub fn flying(scenario: &Scenario, route: &app::Route, script: Script) -> Self {
         let settings = settings(&scenario.conditions, route);
         let stops_s = scenario.conditions.restart_s;
         Self {

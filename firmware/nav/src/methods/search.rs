@@ -132,15 +132,19 @@ struct Guess {
 
 /// A ring of values at a bearing, by linear interpolation.
 fn ring(values: &[f32], bearing: f32) -> f32 {
-    let place = bearing * (values.len() as f32 / TAU);
-    let below = libm::floorf(place);
-    let index = (below as i32).rem_euclid(values.len() as i32) as usize;
-    let next = if index + 1 == values.len() {
-        0
+    let count = values.len() as i32;
+    let place = bearing * (count as f32 / TAU);
+    let towards_zero = place as i32;
+    let below = towards_zero - i32::from(towards_zero as f32 > place);
+    // Most are on the ring already, and a division takes as long as all the rest.
+    let index = if (0..count).contains(&below) {
+        below
     } else {
-        index + 1
+        below.rem_euclid(count)
     };
-    values[index] + (values[next] - values[index]) * (place - below)
+    let next = if index + 1 == count { 0 } else { index + 1 };
+    let [value, next] = [index, next].map(|index| values[index as usize]);
+    value + (next - value) * (place - below as f32)
 }
 
 impl HomingMethod for Search {

@@ -1,4 +1,4 @@
-use core::f64::consts::TAU;
+use core::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
 use proptest::prelude::*;
@@ -206,16 +206,95 @@ fn a_warp_in_coefficients_is_the_exact_warp_of_the_view() {
     let here = Harmonics::of(&place.view(HERE, 0.0));
     for (index, distance) in search.distances().into_iter().enumerate() {
         let exact = Harmonics::of(&place.view([f64::from(distance), 0.0], 0.0));
-        let warped = search.warped(&here, index, 8);
-        for (k, (warped, exact)) in warped.iter().zip(&exact.0).enumerate().take(8) {
+        let warped = search.warped(&here, index);
+        for (k, (warped, exact)) in warped.0.iter().zip(&exact.0).enumerate().take(8) {
             // The 128 samples of the exact view fold its highest frequencies back; the warp has none
-            // beyond 24.
+            // beyond 24, and its factors are rounded.
             assert!(
                 (warped - exact).l1_norm() < 0.03,
                 "{distance}, {k}: {warped} {exact}"
             );
         }
     }
+}
+
+/// Σ |c'_k - t_k|² k^-power of a view moved by `distance` towards every tenth degree from the first
+/// `compared` frequencies of a stored one: the definition, integrals, sums and all, in double precision.
+fn differences_in_plain_sums(
+    [view, stored]: [&Harmonics; 2],
+    distance: f32,
+    [compared, power]: [i32; 2],
+) -> [f64; 36] {
+    let wide = |c: &Complex<f32>| Complex::new(f64::from(c.re), f64::from(c.im));
+    let turned = |c: Complex<f64>, angle: f64| c * Complex::new(libm::cos(angle), libm::sin(angle));
+    let g = |k: i32, m: i32| {
+        let integrand = |n: i32| {
+            let theta = PI * (f64::from(n) + 0.5) / 256.0;
+            let psi = theta - libm::asin(f64::from(distance) * libm::sin(theta));
+            libm::cos(f64::from(m) * psi - f64::from(k) * theta)
+        };
+        (0..256).map(integrand).sum::<f64>() / 256.0
+    };
+    let mut differences = [0.0; 36];
+    for k in 1..=compared {
+        let factors: [[f64; 2]; 20] =
+            core::array::from_fn(|m| [1, -1].map(|sign| g(k, sign * (m as i32 + 1))));
+        for (direction, difference) in differences.iter_mut().enumerate() {
+            let alpha = TAU * direction as f64 / 36.0;
+            let mut moved = -turned(wide(&stored.0[k as usize - 1]), alpha * f64::from(k));
+            for ((m, c), [plain, conjugate]) in (1..=20).zip(&view.0).zip(factors) {
+                let c = turned(wide(c), alpha * f64::from(m));
+                moved += c * plain + c.conj() * conjugate;
+            }
+            *difference += moved.norm_sqr() / f64::from(k).powi(power);
+        }
+    }
+    differences
+}
+
+#[test]
+fn the_differences_in_fixed_point_are_those_of_plain_sums() {
+    for (seed, frequencies, power) in [(1, 8, 0_u8), (2, 3, 1), (3, 16, 2)] {
+        let place = Place::new(seed);
+        let search = WarpSearch::new(WarpParameters {
+            code: code(frequencies, 8),
+            power: f32::from(power),
+            ..warps(0, false).parameters()
+        });
+        let here = Harmonics::of(&place.view(HERE, 0.0));
+        // Also a view of another contrast.
+        let goal = Harmonics::of(&place.view([0.4, -0.2], 0.0).map(|luma| 0.6 * luma));
+        let stored = search
+            .parameters()
+            .code
+            .decode(&search.parameters().code.encode(&goal));
+        let powers =
+            [&here, &stored].map(|view| f64::from(2.0 * view.variance(frequencies.into())));
+        for index in [0, 4, 7] {
+            let plain = differences_in_plain_sums(
+                [&here, &stored],
+                search.distances()[index],
+                [frequencies.into(), power.into()],
+            );
+            let fixed = search.differences(&here, &stored, index);
+            for (fixed, plain) in fixed.into_iter().zip(plain) {
+                let error = (f64::from(fixed) - plain) / (powers[0] + powers[1]);
+                assert!(error.abs() < 1e-3, "{seed}, {index}: {fixed} {plain}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_search_with_a_turn_compares_the_turned_memory() {
+    // What a turn of the memory is to the search, a turn of the place is to one without.
+    let place = Place::new(6);
+    let here = place.view(HERE, 0.0);
+    let turn = f64::from(2.0 * 2.0 * crate::horizon::BEARING_STEP_RAD);
+    let turned = way(&warps(2, false), &here, &place.view([0.3, 0.1], turn));
+    let straight = way(&warps(0, false), &here, &place.view([0.3, 0.1], 0.0));
+    assert_eq!(turned.displacement, straight.displacement);
+    assert!((f64::from(turned.rotation) - turn).abs() < 1e-6);
 }
 
 #[test]

@@ -4,18 +4,29 @@
 //! In coefficients a warp by ρ straight ahead is a real matrix: with ψ = θ - asin(ρ sin θ),
 //!
 //! ```text
-//! c'_k = Σ_m [ (G_k,m + G_k,-m) Re c_m + i (G_k,m - G_k,-m) Im c_m ],   G_k,m = 1/π ∫ cos(mψ - kθ) dθ over 0..π
+//! c'_k = Σ_m [ G_k,m c_m + G_k,-m conj(c_m) ],   G_k,±m = 1/π ∫ cos(mψ ∓ kθ) dθ over 0..π
 //! ```
 //!
-//! so that the real parts go through 2/π ∫ cos mψ cos kθ and the imaginary ones through
-//! 2/π ∫ sin mψ sin kθ. Frequency zero stays out of it. A warp towards α is the same between two
-//! rotations. One matrix a distance is all the table there is.
+//! Frequency zero stays out of it. A warp towards α is the same between two rotations, c_m e^{imα}
+//! and t_k e^{ikα}. So the difference Σ w_k |c'_k - t_k|² of the moved view from the stored one is, as a
+//! function of α, a Fourier series whose coefficients are sums of products of two coefficients, each
+//! times a factor that the distance alone decides: the correlation theorem, by which all directions
+//! cost little more than one.
+//!
+//! The products, the sums and the series are in 16 and 32 bits, two products an instruction.
 
-use core::f32::consts::{PI, TAU};
+mod series;
+mod tables;
+mod terms;
+
+use core::f32::consts::TAU;
 
 use nalgebra::{Complex, Vector2};
 
-use super::coefficients::{CoefficientCode, Harmonics};
+use self::series::{Multipliers, Products, Sums, Waves};
+use self::tables::Factors;
+use self::terms::{CROSS, CROSS_PAIRS, HARMONICS, OWN, OWN_PAIRS};
+use super::coefficients::{CoefficientCode, Harmonics, MOST_FREQUENCIES};
 use super::fourier::check_contrast;
 use super::quadratic::{self, Model, Weights};
 use super::{Homeward, HomingMethod, Luma, Memory};
@@ -31,19 +42,8 @@ const MOST_COMPARED: usize = 16;
 const IN: usize = 20;
 /// Directions tried: every 10 degrees.
 const DIRECTIONS: u8 = 36;
-/// Samples of the half circle under the integrals.
-const SAMPLES: usize = 128;
 /// The last step is held to this, in units of the distance.
 const POLISH_BOUND: f32 = 0.15;
-
-/// A matrix by column: what each frequency of the current view adds to all of the moved one.
-type Columns = [[f32; MOST_COMPARED]; IN];
-
-/// Sums that are carried at once while a view is warped: as many as registers hold.
-const BLOCK: usize = 8;
-
-/// The lowest coefficients of a moved view.
-type Moved = [Complex<f32>; MOST_COMPARED];
 
 /// What can be chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,44 +68,86 @@ pub struct WarpSearch {
     parameters: WarpParameters,
     weights: Weights,
     distances: [f32; DISTANCES],
-    /// For the real parts, by distance.
-    even: [Columns; DISTANCES],
-    /// For the imaginary parts.
-    odd: [Columns; DISTANCES],
+    /// How many terms of each harmonic count.
+    lengths: [u8; HARMONICS],
+    /// The same with one frequency more, because the gradient of the last leans on it.
+    polish_lengths: [u8; HARMONICS],
+    own_lengths: [u8; HARMONICS],
+    /// Of the stored view's products with the current one.
+    cross: Factors<CROSS_PAIRS>,
+    /// Of the current view's products with itself.
+    own: Factors<OWN_PAIRS>,
+    waves: Waves,
+    /// Unit vectors in the directions that are tried.
+    bearings: [Complex<f32>; DIRECTIONS as usize],
 }
 
 impl WarpSearch {
+    /// One that has no tables yet, and finds nothing until it [adopts](Self::adopt) parameters: for
+    /// a static, where 19 KiB had better not pass over the stack.
+    pub const fn blank() -> Self {
+        Self {
+            parameters: WarpParameters {
+                code: CoefficientCode {
+                    frequencies: 1,
+                    bits: 8,
+                    range: 1.0,
+                },
+                power: 0.0,
+                farthest: f32::NAN,
+                rotations: 0,
+                rotation_step: 0,
+                polish: false,
+            },
+            weights: [0.0; MOST_FREQUENCIES],
+            distances: [0.0; DISTANCES],
+            lengths: [0; HARMONICS],
+            polish_lengths: [0; HARMONICS],
+            own_lengths: [0; HARMONICS],
+            bearings: [Complex::new(1.0, 0.0); DIRECTIONS as usize],
+            cross: tables::empty(),
+            own: tables::empty(),
+            waves: Waves::NONE,
+        }
+    }
+
     /// A method of these parameters; its tables are computed here.
     pub fn new(parameters: WarpParameters) -> Self {
-        let mut search = Self {
-            parameters,
-            weights: quadratic::power_law(parameters.power),
-            distances: [0.0; DISTANCES],
-            even: [[[0.0; MOST_COMPARED]; IN]; DISTANCES],
-            odd: [[[0.0; MOST_COMPARED]; IN]; DISTANCES],
-        };
-        search.fill();
+        let mut search = Self::blank();
+        search.adopt(parameters);
         search
     }
 
-    /// Takes other parameters. The tables are computed anew only for another farthest move: on the
-    /// board, 26 KiB had better stay where they are.
+    /// Takes other parameters. The larger table is computed anew only for another farthest move.
     pub fn adopt(&mut self, parameters: WarpParameters) {
-        let same_tables = parameters.farthest == self.parameters.farthest;
+        let same_moves = parameters.farthest == self.parameters.farthest;
         self.weights = quadratic::power_law(parameters.power);
         self.parameters = parameters;
-        if !same_tables {
-            self.fill();
+        if !same_moves {
+            self.fill_cross();
         }
+        self.fill_own();
     }
 
-    fn fill(&mut self) {
+    fn fill_cross(&mut self) {
         let farthest = self.parameters.farthest.clamp(0.0, 0.99);
-        let tables = self.even.iter_mut().zip(&mut self.odd);
-        for (index, (distance, (even, odd))) in self.distances.iter_mut().zip(tables).enumerate() {
+        for (index, distance) in self.distances.iter_mut().enumerate() {
             *distance = farthest * (index + 1) as f32 / DISTANCES as f32;
-            fill(even, odd, *distance);
         }
+        self.waves.fill();
+        for (direction, bearing) in (0_u8..).zip(&mut self.bearings) {
+            let angle = TAU * f32::from(direction) / f32::from(DIRECTIONS);
+            *bearing = Complex::new(libm::cosf(angle), libm::sinf(angle));
+        }
+        self.own_lengths = OWN.up_to(IN);
+        tables::fill_cross(&mut self.cross, &self.distances);
+    }
+
+    fn fill_own(&mut self) {
+        let compared = self.compared();
+        self.lengths = CROSS.up_to(compared);
+        self.polish_lengths = CROSS.up_to(compared + 1);
+        tables::fill_own(&mut self.own, &self.cross, &self.weights, compared);
     }
 
     /// The moves that are tried, in units of the surroundings' distance.
@@ -113,82 +155,176 @@ impl WarpSearch {
         self.distances
     }
 
+    /// Its parameters.
+    pub const fn parameters(&self) -> WarpParameters {
+        self.parameters
+    }
+
     fn compared(&self) -> usize {
         self.parameters.code.kept().min(MOST_COMPARED)
     }
 
-    /// The view after a move straight ahead: `count` of its coefficients at least, the rest zero.
-    pub(super) fn warped(&self, view: &Harmonics, distance: usize, count: usize) -> Moved {
-        let mut moved = [Complex::new(0.0, 0.0); MOST_COMPARED];
-        let blocks = count.div_ceil(BLOCK);
-        for (block, moved) in moved.chunks_exact_mut(BLOCK).take(blocks).enumerate() {
-            let re = product(&self.even[distance], block, view, |c| c.re);
-            let im = product(&self.odd[distance], block, view, |c| c.im);
-            for (c, (re, im)) in moved.iter_mut().zip(re.into_iter().zip(im)) {
-                *c = Complex::new(re, im);
+    /// The coefficients that are compared, and one more, of a view after a move straight ahead.
+    pub(super) fn warped(&self, view: &Harmonics, distance: usize) -> Harmonics {
+        let mut moved = Harmonics::NONE;
+        for (harmonic, length) in self.polish_lengths.iter().enumerate() {
+            let start = CROSS.places(harmonic).start;
+            for place in start..start + usize::from(*length) {
+                let term = CROSS.all[place];
+                let [row, column] = [term.first, term.second].map(|k| usize::from(k) - 1);
+                let c = view.0[column];
+                let c = if term.is_apart() { c } else { c.conj() };
+                moved.0[row] += c * (tables::counts(&self.cross, place, distance) / tables::ONE);
             }
         }
         moved
     }
 
-    /// Tries the rotations of one moved view.
-    fn compare(&self, moved: &Moved, stored: &Harmonics, best: &mut Best, at: [u8; 2]) {
-        let compared = self.compared();
-        let mut power = 0.0;
-        let mut product = [Complex::new(0.0, 0.0); MOST_COMPARED];
-        for index in 0..compared {
-            let weight = self.weights[index];
-            power += weight * (moved[index].norm_sqr() + stored.0[index].norm_sqr());
-            product[index] = moved[index] * stored.0[index].conj() * weight;
-        }
-        let product = &mut product[..compared];
+    /// Counts per luma, so that neither view has more than can be summed up. None for what is no
+    /// number.
+    fn scale(&self, seen: &Harmonics, stored: &Harmonics) -> Option<f32> {
+        let larger = seen.variance(IN).max(stored.variance(self.compared()));
+        let scale = series::SIZE / libm::sqrtf(2.0 * larger);
+        (scale > 0.0).then_some(scale)
+    }
+
+    /// Tries all moves, with all turns.
+    fn try_all(&self, seen: &Harmonics, stored: &Harmonics, scale: f32) -> Best {
+        let seen = self.current(seen, scale);
+        let mut best = Best::NONE;
         let step = f32::from(self.parameters.rotation_step) * BEARING_STEP_RAD;
         let bound = i16::from(self.parameters.rotations);
-        if bound > 0 {
-            rotate(product, -f32::from(bound) * step);
-        }
         for rotation in -bound..=bound {
-            let alike: f32 = product.iter().map(|term| term.re).sum();
-            best.offer(power - 2.0 * alike, at, f32::from(rotation) * step);
-            if bound > 0 {
-                rotate(product, step);
+            let rotation = f32::from(rotation) * step;
+            let common = self.common(&seen.multipliers, stored, rotation, scale);
+            for distance in 0..DISTANCES {
+                self.waves
+                    .differences(&seen.power, &common, distance, |direction, difference| {
+                        best.offer(difference, [direction, distance], rotation);
+                    });
             }
+        }
+        best
+    }
+
+    /// What does not depend on the stored view.
+    fn current(&self, seen: &Harmonics, scale: f32) -> Current {
+        let counts = series::counts(&seen.0[..IN], scale);
+        let multipliers = Multipliers::of(&counts);
+        let products = Products::of(&OWN, &self.own_lengths, &counts, &multipliers);
+        Current {
+            power: series::sums(&OWN, &self.own_lengths, &products, &self.own),
+            multipliers,
+        }
+    }
+
+    /// What the moved view and the stored one, turned back by `rotation`, have in common.
+    fn common(&self, seen: &Multipliers, stored: &Harmonics, rotation: f32, scale: f32) -> Sums {
+        let mut goal = *stored;
+        for (c, weight) in goal.0.iter_mut().zip(&self.weights) {
+            *c *= *weight;
+        }
+        let goal = &mut goal.0[..self.compared()];
+        if rotation != 0.0 {
+            rotate(goal, -rotation);
+        }
+        let counts = series::counts(goal, scale);
+        let products = Products::of(&CROSS, &self.lengths, &counts, seen);
+        series::sums(&CROSS, &self.lengths, &products, &self.cross)
+    }
+
+    /// Σ w_k |c_k|² of a stored view.
+    fn weighted_power(&self, stored: &Harmonics) -> f32 {
+        let weighted = stored.0.iter().zip(&self.weights).take(self.compared());
+        weighted.map(|(c, weight)| weight * c.norm_sqr()).sum()
+    }
+
+    /// One step of Fourier homing from the best guess. Where the views leave it open, the guess stays.
+    fn polish(&self, seen: &Harmonics, stored: &Harmonics, best: &Best, found: &mut Homeward) {
+        let bearing = self.bearings[best.direction];
+        let mut ahead = *seen;
+        turn(&mut ahead.0[..IN], bearing);
+        let mut moved = self.warped(&ahead, best.distance);
+        turn(&mut moved.0[..terms::ROWS], bearing.conj());
+        let mut goal = *stored;
+        if best.rotation != 0.0 {
+            rotate(&mut goal.0[..MOST_COMPARED], -best.rotation);
+        }
+        let model = Model {
+            weights: &self.weights,
+            frequencies: self.compared(),
+            next_term: true,
+            with_turn: self.parameters.rotations > 0,
+        };
+        if let Ok(step) = quadratic::minimum(&model, &moved, &goal) {
+            found.displacement += step.xy().cap_magnitude(POLISH_BOUND);
+            found.rotation -= step.z;
         }
     }
 }
 
-/// A block of a matrix times one part of a view's coefficients.
-fn product(
-    columns: &Columns,
-    block: usize,
-    view: &Harmonics,
-    part: impl Fn(&Complex<f32>) -> f32,
-) -> [f32; BLOCK] {
-    let mut sums = [0.0; BLOCK];
-    for (column, c) in columns.iter().zip(&view.0) {
-        let part = part(c);
-        let factors = &column[block * BLOCK..(block + 1) * BLOCK];
-        for (sum, factor) in sums.iter_mut().zip(factors) {
-            *sum += factor * part;
-        }
+/// The current view as the search takes it.
+struct Current {
+    multipliers: Multipliers,
+    /// The weighted power after a move.
+    power: Sums,
+}
+
+#[cfg(test)]
+impl WarpSearch {
+    /// The differences of a view, moved by a distance in every direction, from a stored one, luma².
+    pub(super) fn differences(
+        &self,
+        seen: &Harmonics,
+        stored: &Harmonics,
+        distance: usize,
+    ) -> [f32; DIRECTIONS as usize] {
+        let scale = self.scale(seen, stored).unwrap();
+        let stored_power = self.weighted_power(stored);
+        let mut found = [0.0; DIRECTIONS as usize];
+        let seen = self.current(seen, scale);
+        let common = self.common(&seen.multipliers, stored, 0.0, scale);
+        self.waves
+            .differences(&seen.power, &common, distance, |direction, difference| {
+                let difference = difference as f32 / series::counts_per_square_luma(scale);
+                found[direction] = difference + stored_power;
+            });
+        found
     }
-    sums
+}
+
+/// Turns the viewer of c_1, c_2, ... by the angle of a unit vector.
+fn turn(coefficients: &mut [Complex<f32>], by: Complex<f32>) {
+    let mut power = by;
+    for coefficient in coefficients {
+        *coefficient *= power;
+        power *= by;
+    }
 }
 
 /// The guesses that fit best.
 struct Best {
-    difference: f32,
-    direction: u8,
-    distance: u8,
+    /// In counts, less the power of the stored view.
+    difference: i32,
+    direction: usize,
+    distance: usize,
     rotation: f32,
     /// The least difference for each direction.
-    by_direction: [f32; DIRECTIONS as usize],
+    by_direction: [i32; DIRECTIONS as usize],
 }
 
 impl Best {
-    fn offer(&mut self, difference: f32, [direction, distance]: [u8; 2], rotation: f32) {
-        let here = &mut self.by_direction[usize::from(direction)];
-        *here = here.min(difference);
+    const NONE: Self = Self {
+        difference: i32::MAX,
+        direction: 0,
+        distance: 0,
+        rotation: 0.0,
+        by_direction: [i32::MAX; DIRECTIONS as usize],
+    };
+
+    fn offer(&mut self, difference: i32, [direction, distance]: [usize; 2], rotation: f32) {
+        let here = &mut self.by_direction[direction];
+        *here = difference.min(*here);
         if difference < self.difference {
             self.difference = difference;
             self.direction = direction;
@@ -198,36 +334,14 @@ impl Best {
     }
 
     /// How much worse the best guess is that points more than 90 degrees elsewhere: 0 as good, 1
-    /// infinitely worse.
-    fn distinctness(&self) -> f32 {
-        let quarter = DIRECTIONS / 4;
-        let opposite = (quarter + 1..DIRECTIONS - quarter)
-            .map(|turn| self.by_direction[usize::from((self.direction + turn) % DIRECTIONS)]);
-        let other = opposite.fold(f32::INFINITY, f32::min);
-        (1.0 - self.difference / other).clamp(0.0, 1.0)
-    }
-}
-
-/// The matrices of a warp by `distance`.
-fn fill(even: &mut Columns, odd: &mut Columns, distance: f32) {
-    *even = [[0.0; MOST_COMPARED]; IN];
-    *odd = [[0.0; MOST_COMPARED]; IN];
-    let share = 2.0 / SAMPLES as f32;
-    for sample in 0..SAMPLES {
-        let theta = PI * (sample as f32 + 0.5) / SAMPLES as f32;
-        let psi = theta - libm::asinf(distance * libm::sinf(theta));
-        let [out, source] =
-            [theta, psi].map(|angle| Complex::new(libm::cosf(angle), libm::sinf(angle)));
-        let mut wave = source;
-        for (even, odd) in even.iter_mut().zip(odd.iter_mut()) {
-            let mut echo = out;
-            for (even, odd) in even.iter_mut().zip(odd.iter_mut()) {
-                *even += share * wave.re * echo.re;
-                *odd += share * wave.im * echo.im;
-                echo *= out;
-            }
-            wave *= source;
-        }
+    /// infinitely worse. `stored` is the power of the stored view, counts.
+    fn distinctness(&self, stored: f32) -> f32 {
+        let directions = usize::from(DIRECTIONS);
+        let opposite = (directions / 4 + 1..directions - directions / 4)
+            .map(|turn| self.by_direction[(self.direction + turn) % directions]);
+        let [this, other] = [self.difference, opposite.fold(i32::MAX, i32::min)]
+            .map(|difference| (difference as f32 + stored).max(1.0));
+        (1.0 - this / other).clamp(0.0, 1.0)
     }
 }
 
@@ -249,63 +363,19 @@ impl HomingMethod for WarpSearch {
     fn home(&self, seen: &Harmonics, memory: &Memory) -> Result<Homeward, NoVectorReason> {
         let stored = self.parameters.code.decode(memory);
         check_contrast(seen, &stored, self.compared())?;
-        let mut best = Best {
-            difference: f32::INFINITY,
-            direction: 0,
-            distance: 0,
-            rotation: 0.0,
-            by_direction: [f32::INFINITY; DIRECTIONS as usize],
-        };
-        let step = TAU / f32::from(DIRECTIONS);
-        let [mut ahead, mut goal] = [*seen, stored];
-        for direction in 0..DIRECTIONS {
-            for distance in 0..DISTANCES as u8 {
-                let moved = self.warped(&ahead, usize::from(distance), self.compared());
-                self.compare(&moved, &goal, &mut best, [direction, distance]);
-            }
-            rotate(&mut ahead.0[..IN], step);
-            rotate(&mut goal.0[..MOST_COMPARED], step);
-        }
-        if !best.difference.is_finite() {
-            return Err(NoVectorReason::NotFinite);
-        }
-        let angle = f32::from(best.direction) * step;
-        let towards = Vector2::new(libm::cosf(angle), libm::sinf(angle));
+        let scale = self.scale(seen, &stored).ok_or(NoVectorReason::NotFinite)?;
+        let best = self.try_all(seen, &stored, scale);
+        let bearing = self.bearings[best.direction];
+        let towards = Vector2::new(bearing.re, bearing.im);
+        let power = self.weighted_power(&stored) * series::counts_per_square_luma(scale);
         let mut found = Homeward {
-            displacement: towards * self.distances[usize::from(best.distance)],
+            displacement: towards * self.distances[best.distance],
             rotation: best.rotation,
-            quality: best.distinctness(),
+            quality: best.distinctness(power),
         };
         if self.parameters.polish {
             self.polish(seen, &stored, &best, &mut found);
         }
         Ok(found)
-    }
-}
-
-impl WarpSearch {
-    /// One step of Fourier homing from the best guess. Where the views leave it open, the guess stays.
-    fn polish(&self, seen: &Harmonics, stored: &Harmonics, best: &Best, found: &mut Homeward) {
-        let angle = f32::from(best.direction) * (TAU / f32::from(DIRECTIONS));
-        let mut ahead = *seen;
-        rotate(&mut ahead.0[..IN], angle);
-        let mut moved = Harmonics::NONE;
-        // The gradient of the last frequency leans on the next.
-        let count = self.compared() + 1;
-        let warped = self.warped(&ahead, usize::from(best.distance), count);
-        moved.0[..MOST_COMPARED].copy_from_slice(&warped);
-        rotate(&mut moved.0[..MOST_COMPARED], -angle);
-        let mut goal = *stored;
-        rotate(&mut goal.0[..MOST_COMPARED], -best.rotation);
-        let model = Model {
-            weights: &self.weights,
-            frequencies: self.compared(),
-            next_term: self.compared() < MOST_COMPARED,
-            with_turn: self.parameters.rotations > 0,
-        };
-        if let Ok(step) = quadratic::minimum(&model, &moved, &goal) {
-            found.displacement += step.xy().cap_magnitude(POLISH_BOUND);
-            found.rotation -= step.z;
-        }
     }
 }
