@@ -175,7 +175,7 @@ fn shards_put_together_are_the_sweep_and_nothing_else_is_taken_for_one() {
     let folder = Folder::new("shards");
     let file = folder.with("corner.toml", CORNER);
     let out = folder.file("out");
-    let whole = hil(&["sweep", &file, "--json"]);
+    let whole = hil(&["sweep", &file, "--json", "--out", &folder.file("whole")]);
     assert_eq!(whole.status.code(), Some(0), "{}", stderr(&whole));
     for shard in ["1/2", "2/2"] {
         let output = hil(&["sweep", &file, "--shard", shard, "--out", &out]);
@@ -216,7 +216,8 @@ fn shards_put_together_are_the_sweep_and_nothing_else_is_taken_for_one() {
 fn a_sweep_names_its_figures_as_scripts_expect() {
     let folder = Folder::new("names");
     let file = folder.with("corner.toml", CORNER);
-    let output = hil(&["sweep", &file, "--flights", "1", "--json"]);
+    let out = folder.file("out");
+    let output = hil(&["sweep", &file, "--flights", "1", "--json", "--out", &out]);
     let sweep = json(&output);
     for name in ["flights", "home_within_half_metre"] {
         assert_eq!(sweep[name], 1, "{name}");
