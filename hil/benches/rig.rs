@@ -11,7 +11,7 @@ use emulator::time::Nanos;
 use emulator::wiring::Unwired;
 use hil::bench::EXAMPLE;
 use hil::board::emulated::Firmware;
-use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing};
+use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing, Storage};
 use hil::{flight, image};
 
 /// Of the busy core's time, 16 million cycles a second.
@@ -44,6 +44,7 @@ fn flights(criterion: &mut Criterion) {
         world: "arena-panels".to_owned(),
         seed: 1,
         spacing: Spacing::DEFAULT,
+        storage: Storage::PAPER,
         homing: Homing::default(),
         conditions: Conditions::default(),
     };

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::board::BoardError;
 use crate::board::emulated::Firmware;
 use crate::flight::{self, FlightError};
-use crate::scenario::{Conditions, Homing, Route, Scenario, Spacing};
+use crate::scenario::{Conditions, Homing, Route, Scenario, Spacing, Storage};
 
 /// The firmware's example that keeps the core busy.
 pub const EXAMPLE: &str = "busy";
@@ -51,6 +51,7 @@ pub fn realtime_factor(elf: Option<&[u8]>) -> Result<f64, FlightError> {
         world: "arena-panels".to_owned(),
         seed: 1,
         spacing: Spacing::DEFAULT,
+        storage: Storage::PAPER,
         homing: Homing::default(),
         conditions: Conditions::default(),
     };

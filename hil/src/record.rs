@@ -6,11 +6,11 @@
 use core::f64::consts::TAU;
 
 use link::Message;
-use nav::snapshot::SNAPSHOT_BYTES;
-use nav::{OdometryVector, StoredSnapshot};
+use nav::OdometryVector;
 use serde::Serialize;
 
 use crate::board::origin::{Origin, Place};
+use crate::scenario::SnapshotForm;
 
 /// What the drone was doing; the colours of the paper's Fig. 6 follow from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -255,6 +255,8 @@ pub struct Recording {
     pub route: Vec<[f64; 2]>,
     /// Ten points a second.
     pub track: Vec<TrackPoint>,
+    /// How they were stored.
+    pub snapshot_form: SnapshotForm,
     /// In the order in which they were taken.
     pub snapshots: Vec<SnapshotMark>,
     /// Vectors that the firmware had stored when it turned to follow the route, or when the flight
@@ -292,7 +294,7 @@ impl Recording {
     /// What the route took when the way out ended.
     pub fn memory(&self) -> RouteMemory {
         RouteMemory {
-            snapshots: SNAPSHOT_BYTES * self.snapshots_stored(),
+            snapshots: self.snapshot_form.format().bytes() * self.snapshots_stored(),
             counts: COUNT_BYTES * self.snapshots_stored(),
             vectors: OdometryVector::BYTES * usize::from(self.odometry_stored),
         }
@@ -300,7 +302,7 @@ impl Recording {
 }
 
 /// Bytes of an odometry count (paper, Fig. 8).
-const COUNT_BYTES: usize = StoredSnapshot::BYTES - SNAPSHOT_BYTES;
+const COUNT_BYTES: usize = size_of::<u16>();
 
 /// The route memory by its use, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 use hil::flight::{Flown, fly_native};
 use hil::import_cf::{ImportError, LogFile, import};
 use hil::record::{Phase, PlanarPose, Reference};
-use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing};
+use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing, Storage};
 use proptest::prelude::*;
 
 /// Round one corner with a snapshot every metre, seed 1.
@@ -20,6 +20,7 @@ static FLOWN: LazyLock<Flown> = LazyLock::new(|| {
         world: "arena-panels".into(),
         seed: 1,
         spacing: Spacing::from_metres(1.0).expect("a spacing"),
+        storage: Storage::PAPER,
         homing: Homing::Both,
         conditions: Conditions::default(),
     };

@@ -13,14 +13,17 @@ use hil::sweep::{FlightFigures, Outcome, Vessel, fly_each};
 use serde_json::Value;
 
 /// Scenarios whose flights take many seconds, some of them minutes: flown by `hil experiments` alone.
-const LONG: [&str; 10] = [
+const LONG: [&str; 13] = [
     "corridor-120m",
     "corridor-odometry",
     "corridor-snapshot",
     "forest-300m",
+    "forest-300m-fine",
     "s-greenhouse",
+    "s-lean",
     "s-one-metre",
     "s-soft",
+    "u-lean-photograph",
     "u-odometry",
     "u-office",
     "u-wind",

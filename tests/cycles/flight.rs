@@ -12,7 +12,7 @@ use hil::board::timing::TimingModel;
 use hil::flight;
 use hil::image;
 use hil::profile::{self, Profiled, Stage, Window, chrome};
-use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing};
+use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing, Storage};
 use hil::size::Size;
 use tests::Budgets;
 
@@ -31,6 +31,7 @@ fn corner() -> Scenario {
         world: "arena-panels".to_owned(),
         seed: 1,
         spacing: Spacing::from_metres(2.0).expect("a spacing"),
+        storage: Storage::PAPER,
         homing: Homing::Both,
         conditions: Conditions::default(),
     }

@@ -100,7 +100,7 @@ fn remembered(parameters: &Parameters, frame: &Frame, tilt: Tilt) -> Snapshot {
     outbox.clear();
     pilot.on_message(100, &state, &mut outbox);
     let snapshots = pilot.navigator().route().snapshots();
-    snapshots.first().expect("a snapshot").snapshot
+    snapshots.last().expect("a snapshot").view.in_paper_form()
 }
 
 #[test]

@@ -5,7 +5,9 @@ use std::sync::OnceLock;
 
 use hil::flight::{Flown, fly_emulated, fly_native};
 use hil::image;
-use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing};
+use hil::scenario::{
+    Conditions, Deviation, Homing, Route, Scenario, SnapshotForm, Spacing, Storage,
+};
 use tests::Budgets;
 
 /// The image; a machine that cannot build it fails every test here.
@@ -24,6 +26,7 @@ fn scenario(route: Route) -> Scenario {
         world: "arena-panels".to_owned(),
         seed: 1,
         spacing,
+        storage: Storage::PAPER,
         homing: Homing::Both,
         conditions: Conditions::default(),
     }
@@ -68,6 +71,32 @@ fn native_and_emulated_flights_agree_to_the_bit() {
             .collect()
     };
     assert_eq!(exposures(emulated), exposures(&native));
+}
+
+#[test]
+fn a_route_of_packed_snapshots_is_followed_home_alike_on_either_board() {
+    for snapshots in [SnapshotForm::Lean, SnapshotForm::Fine] {
+        let scenario = Scenario {
+            storage: Storage {
+                snapshots,
+                deviation: Deviation::from_metres(0.3).expect("three tenths"),
+            },
+            ..scenario(Route::Corner)
+        };
+        let emulated = fly_emulated(&scenario, elf(), &mut |_| ()).expect("a flight");
+        let native = fly_native(&scenario, &mut |_| ()).expect("a flight");
+        assert!(native.summary.completed, "{}", native.summary.outcome);
+        assert!(native.recording.corrections.len() >= 2);
+        let [emulated, native] = [emulated, native].map(|flown| flown.recording);
+        assert_eq!(json(&emulated.snapshots), json(&native.snapshots));
+        assert_eq!(json(&emulated.vectors), json(&native.vectors));
+        assert_eq!(json(&emulated.track), json(&native.track));
+        let paper = &corner().recording;
+        assert_eq!(native.snapshots.len(), paper.snapshots.len());
+        assert_ne!(json(&native.snapshots), json(&paper.snapshots));
+        let less = snapshots == SnapshotForm::Lean;
+        assert_eq!(native.memory().snapshots < paper.memory().snapshots, less);
+    }
 }
 
 #[test]

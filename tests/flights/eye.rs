@@ -7,7 +7,7 @@ use hil::flight::{FlightError, Flown, fly_emulated, fly_native};
 use hil::image;
 use hil::record::LogLine;
 use hil::scenario::{
-    CameraTrouble, Conditions, Homing, LensPage, Route, Scenario, Spacing, WireFault,
+    CameraTrouble, Conditions, Homing, LensPage, Route, Scenario, Spacing, Storage, WireFault,
 };
 use nav::LensCalibration;
 use tests::Budgets;
@@ -21,6 +21,7 @@ fn fly(world: &str, conditions: Conditions) -> Flown {
         world: world.to_owned(),
         seed: 1,
         spacing: Spacing::from_metres(2.0).expect("a spacing"),
+        storage: Storage::PAPER,
         homing: Homing::Both,
         conditions,
     };
@@ -105,6 +106,7 @@ fn corner(conditions: Conditions) -> Scenario {
         world: "arena-panels".to_owned(),
         seed: 1,
         spacing: Spacing::from_metres(2.0).expect("a spacing"),
+        storage: Storage::PAPER,
         homing: Homing::Both,
         conditions,
     }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use hil::flight::{Flown, fly_emulated, fly_native};
 use hil::image;
 use hil::record::{Deed, LinkDrop, Recording, Side, What};
-use hil::scenario::{Conditions, Homing, Quirk, Route, Scenario, Spacing};
+use hil::scenario::{Conditions, Homing, Quirk, Route, Scenario, Spacing, Storage};
 use link::{Command, Event, Message, Mode, Parser, State, Vector};
 use nav::Navigator;
 use serde::Serialize;
@@ -18,6 +18,7 @@ fn scenario(route: Route, seed: u64, conditions: Conditions) -> Scenario {
         world: "arena-panels".to_owned(),
         seed,
         spacing: Spacing::from_metres(2.0).expect("a spacing"),
+        storage: Storage::PAPER,
         homing: Homing::Both,
         conditions,
     }

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use hil::flight::{Flown, fly_native};
 use hil::record::Phase;
-use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing};
+use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing, Storage};
 use tests::Budgets;
 
 fn scenario(route: Route, homing: Homing, seed: u64) -> Scenario {
@@ -14,6 +14,7 @@ fn scenario(route: Route, homing: Homing, seed: u64) -> Scenario {
         world: "arena-panels".to_owned(),
         seed,
         spacing,
+        storage: Storage::PAPER,
         homing,
         conditions: Conditions::default(),
     }

@@ -13,6 +13,7 @@
 
 mod alignment;
 mod difference;
+mod packed;
 mod resemblance;
 
 use nalgebra::Vector2;
@@ -23,6 +24,7 @@ use crate::spectrum::{STORED_FREQUENCIES, Spectrum, rotate};
 
 pub use alignment::{align_within, align128};
 pub use difference::ImageDifference;
+pub use packed::home_packed;
 pub use resemblance::Resemblance;
 
 /// Weights of the frequencies k = 1..=8.

@@ -50,5 +50,5 @@ pub use navigator::{
 pub use panorama::{FrameLayout, PanoramaMap};
 pub use pose::Pose;
 pub use route::{OdometryVector, Route, RouteFull, StoredSnapshot};
-pub use snapshot::Snapshot;
+pub use snapshot::{Snapshot, SnapshotFormat};
 pub use spectrum::Spectrum;

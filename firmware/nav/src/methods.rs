@@ -19,7 +19,7 @@ mod fourier;
 mod grey;
 mod mfdid;
 pub mod presets;
-mod quadratic;
+pub(crate) mod quadratic;
 mod search;
 mod warp_search;
 
@@ -29,6 +29,7 @@ use crate::homing::NoVectorReason;
 use crate::horizon::BEARINGS;
 
 pub use coefficients::{CoefficientCode, Harmonics, MOST_FREQUENCIES};
+pub(crate) use fourier::best_rotation;
 pub use fourier::{Alignment, Fourier, FourierParameters, Unknowns};
 pub use mfdid::{Mfdid, MfdidParameters, MfdidSeen, Slope};
 pub use search::{Resolution, Search, SearchParameters};

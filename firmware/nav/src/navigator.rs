@@ -13,7 +13,7 @@ mod step;
 
 use crate::pose::Pose;
 use crate::route::Route;
-use crate::snapshot::Snapshot;
+use crate::snapshot::{Snapshot, SnapshotFormat};
 use crate::spectrum::Spectrum;
 
 use follower::{Context, Follower};
@@ -116,6 +116,29 @@ impl Navigator {
         if metres > 0.0 && metres.is_finite() {
             self.parameters.snapshot_spacing_m = metres;
         }
+    }
+
+    /// How the snapshots of the next route that is begun are stored.
+    pub const fn set_snapshot_format(&mut self, format: SnapshotFormat) {
+        self.parameters.snapshot_format = format;
+    }
+
+    /// How far a stored way may deviate from the one flown, metres, from now on. What is not a positive
+    /// number is ignored.
+    pub const fn set_simplify_tolerance(&mut self, metres: f32) {
+        if metres > 0.0 && metres.is_finite() {
+            self.parameters.simplify_tolerance_m = metres;
+        }
+    }
+
+    /// Whether views need their detail: to be stored, or to be compared with what is.
+    pub fn needs_detail(&self) -> bool {
+        let format = if self.route.is_empty() {
+            self.parameters.snapshot_format
+        } else {
+            self.route.snapshots().format()
+        };
+        format.needs_detail() && !matches!(self.activity, Activity::Resting)
     }
 
     /// One step for each STATE message (10 Hz): the time (wrapping milliseconds), the autopilot's

@@ -4,17 +4,19 @@
 //! sum. Following the route pops both stacks until they are empty: the way back needs no search.
 
 mod simplify;
+mod snapshots;
 mod vector;
 
 use heapless::Vec;
 use nalgebra::Point2;
 
-use crate::snapshot::{SNAPSHOT_BYTES, Snapshot};
+use crate::snapshot::{SnapshotFormat, StoredView};
+use crate::spectrum::Spectrum;
+use snapshots::HEIGHT_BYTES;
+pub use snapshots::{SNAPSHOT_STACK_BYTES, SnapshotStack};
 pub use vector::{ODOMETRY_RESOLUTION_M, OdometryVector};
 use vector::{pieces, pieces_needed};
 
-/// Snapshots that fit: 1 km at the paper's spacing of 2 m, 9 kB of the microcontroller's 192 kB.
-pub const SNAPSHOT_CAPACITY: usize = 512;
 /// Odometry vectors that fit: four a snapshot (the paper counts 2 to 3), or 600 m of recording by
 /// odometry alone, which never simplifies.
 pub const VECTOR_CAPACITY: usize = 2048;
@@ -28,25 +30,9 @@ pub const SIMPLIFY_TOLERANCE_M: f32 = 0.1;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StoredSnapshot {
     /// The view.
-    pub snapshot: Snapshot,
+    pub view: StoredView,
     /// Odometry vectors below it.
     pub height: u16,
-}
-
-impl StoredSnapshot {
-    /// Bytes with the height.
-    pub const BYTES: usize = SNAPSHOT_BYTES + size_of::<u16>();
-
-    /// The stored form: a_1..a_8, b_1..b_8, the height (little endian).
-    pub fn to_bytes(&self) -> [u8; Self::BYTES] {
-        let mut bytes = [0; Self::BYTES];
-        let (counts, height) = bytes.split_at_mut(SNAPSHOT_BYTES);
-        for (byte, count) in counts.iter_mut().zip(self.snapshot.bytes()) {
-            *byte = count.cast_unsigned();
-        }
-        height.copy_from_slice(&self.height.to_le_bytes());
-        bytes
-    }
 }
 
 /// The route does not fit. Nothing of what was to be stored has been.
@@ -59,7 +45,7 @@ pub struct RouteFull;
 pub struct Route {
     origin: Point2<f32>,
     vectors: Vec<OdometryVector, VECTOR_CAPACITY>,
-    snapshots: Vec<StoredSnapshot, SNAPSHOT_CAPACITY>,
+    snapshots: SnapshotStack,
     /// The sum of all vectors, counts of 0.1 m.
     tip: [i32; 2],
 }
@@ -70,7 +56,7 @@ impl Route {
         Self {
             origin: Point2::new(0.0, 0.0),
             vectors: Vec::new(),
-            snapshots: Vec::new(),
+            snapshots: SnapshotStack::new(SnapshotFormat::Paper),
             tip: [0; 2],
         }
     }
@@ -87,9 +73,11 @@ impl Route {
         self.vectors.is_empty() && self.snapshots.is_empty()
     }
 
-    /// Lets an empty route begin at `origin`; one that is not empty stays as it is.
-    pub fn begin(&mut self, origin: Point2<f32>) {
+    /// Lets an empty route begin at `origin`, with snapshots of a format; one that is not empty stays as
+    /// it is.
+    pub fn begin(&mut self, origin: Point2<f32>, format: SnapshotFormat) {
         if self.is_empty() {
+            self.snapshots.adopt(format);
             self.origin = origin;
             self.tip = [0; 2];
         }
@@ -122,21 +110,22 @@ impl Route {
         Ok(())
     }
 
-    /// Stores a snapshot at the tip, and simplifies the way from the snapshot before.
+    /// Stores a snapshot at the tip, and simplifies the way from the one before to within a tolerance,
+    /// metres. Returns what is left of the view.
     ///
     /// # Errors
     ///
     /// [`RouteFull`].
-    pub fn push_snapshot(&mut self, snapshot: Snapshot) -> Result<(), RouteFull> {
+    pub fn push_snapshot(
+        &mut self,
+        view: &Spectrum,
+        tolerance_m: f32,
+    ) -> Result<StoredView, RouteFull> {
         if self.snapshots.is_full() {
             return Err(RouteFull);
         }
-        self.simplify_last_part();
-        let stored = StoredSnapshot {
-            snapshot,
-            height: self.height(),
-        };
-        self.snapshots.push(stored).map_err(|_| RouteFull)
+        self.simplify_last_part(tolerance_m);
+        self.snapshots.push(view, self.height())
     }
 
     /// Takes the last vector off; the tip moves back by it.
@@ -153,7 +142,7 @@ impl Route {
     }
 
     /// The last snapshot.
-    pub fn top_snapshot(&self) -> Option<&StoredSnapshot> {
+    pub fn top_snapshot(&self) -> Option<StoredSnapshot> {
         self.snapshots.last()
     }
 
@@ -194,18 +183,18 @@ impl Route {
     }
 
     /// The snapshots, oldest first.
-    pub fn snapshots(&self) -> &[StoredSnapshot] {
+    pub const fn snapshots(&self) -> &SnapshotStack {
         &self.snapshots
     }
 
-    /// The route's bytes with each snapshot's height: 18 a snapshot, 2 a vector.
+    /// The route's bytes with each snapshot's height: 18 a snapshot of the paper's, 2 a vector.
     pub fn bytes(&self) -> usize {
-        self.snapshots.len() * StoredSnapshot::BYTES + self.vectors.len() * OdometryVector::BYTES
+        self.snapshots.bytes().len() + self.vectors.len() * OdometryVector::BYTES
     }
 
     /// The route's bytes as the paper counts them, without the heights: 16 a snapshot, 2 a vector.
     pub fn bytes_without_heights(&self) -> usize {
-        self.snapshots.len() * SNAPSHOT_BYTES + self.vectors.len() * OdometryVector::BYTES
+        self.bytes() - self.snapshots.len() * HEIGHT_BYTES
     }
 
     fn height(&self) -> u16 {
@@ -213,12 +202,12 @@ impl Route {
         self.vectors.len() as u16
     }
 
-    fn simplify_last_part(&mut self) {
+    fn simplify_last_part(&mut self, tolerance_m: f32) {
         let start = self.top_snapshot().map_or(0, |top| usize::from(top.height));
         let Some(part) = self.vectors.get_mut(start..) else {
             return;
         };
-        let left = simplify::simplify(part);
+        let left = simplify::simplify(part, tolerance_m);
         self.vectors.truncate(start + left);
     }
 

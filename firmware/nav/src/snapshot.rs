@@ -1,6 +1,12 @@
 //! A place in 16 bytes.
 
+mod format;
+mod packed;
+
 use nalgebra::Complex;
+
+pub use format::{MOST_SNAPSHOT_BYTES, SnapshotFormat, StoredView};
+pub use packed::{PackedSnapshot, Packing};
 
 use crate::spectrum::{STORED_FREQUENCIES, Spectrum, StoredCoefficients};
 

@@ -6,7 +6,10 @@ use nalgebra::Complex;
 
 use crate::horizon::{BEARING_STEP_RAD, BEARINGS, Horizon, SUMMED};
 
+mod detail;
 mod folded;
+
+pub use detail::{DETAIL_FREQUENCIES, Detail};
 
 /// Frequencies that a snapshot stores: k = 1..=8 (paper, Fig. 8).
 pub const STORED_FREQUENCIES: usize = 8;
@@ -22,6 +25,7 @@ pub type StoredCoefficients = [Complex<f32>; STORED_FREQUENCIES];
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spectrum {
     coefficients: [Complex<f32>; VIEW_FREQUENCIES],
+    detail: Option<Detail>,
 }
 
 impl Spectrum {
@@ -38,12 +42,28 @@ impl Spectrum {
             &mut coefficients,
             0.5 * BEARING_STEP_RAD - horizon.residual_rad(),
         );
-        Self { coefficients }
+        Self::from_coefficients(coefficients)
+    }
+
+    /// The spectrum of a horizon with its detail.
+    pub fn with_detail(horizon: &Horizon) -> Self {
+        Self {
+            detail: Some(Detail::of(horizon)),
+            ..Self::of(horizon)
+        }
     }
 
     /// A spectrum from c_1..c_9.
     pub const fn from_coefficients(coefficients: [Complex<f32>; VIEW_FREQUENCIES]) -> Self {
-        Self { coefficients }
+        Self {
+            coefficients,
+            detail: None,
+        }
+    }
+
+    /// c_10..c_17, where they were asked for.
+    pub const fn detail(&self) -> Option<&Detail> {
+        self.detail.as_ref()
     }
 
     /// c_1..c_9.
@@ -53,8 +73,10 @@ impl Spectrum {
 
     /// Whether no coefficient is NaN or infinite.
     pub fn is_finite(&self) -> bool {
+        let detail = self.detail.iter().flat_map(|detail| &detail.0);
         self.coefficients
             .iter()
+            .chain(detail)
             .all(|c| c.re.is_finite() && c.im.is_finite())
     }
 
@@ -62,14 +84,17 @@ impl Spectrum {
     pub fn rotated(&self, angle: f32) -> Self {
         let mut coefficients = self.coefficients;
         rotate(&mut coefficients, angle);
-        Self { coefficients }
+        Self {
+            coefficients,
+            detail: self.detail.map(|detail| detail.rotated(angle)),
+        }
     }
 
     /// The same without the ninth term: what a view restored from a snapshot has.
     pub fn truncated(&self) -> Self {
         let mut coefficients = self.coefficients;
         coefficients[STORED_FREQUENCIES] = Complex::new(0.0, 0.0);
-        Self { coefficients }
+        Self::from_coefficients(coefficients)
     }
 }
 

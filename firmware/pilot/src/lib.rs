@@ -23,8 +23,8 @@ use link::{Message, State};
 use nalgebra::Point2;
 use nav::navigator::EVENTS_PER_STEP;
 use nav::{
-    CalibrationError, Derotation, ExposureController, ExposureParameters, FrameLayout,
-    LensCalibration, Navigator, PanoramaMap, Pose, SetPoint, Spectrum, Step, Tilt,
+    CalibrationError, Derotation, ExposureController, ExposureParameters, FrameLayout, Horizon,
+    LensCalibration, Navigator, PanoramaMap, Pose, SetPoint, SnapshotFormat, Spectrum, Step, Tilt,
 };
 
 pub use nav::{Event, Exposure};
@@ -97,8 +97,15 @@ pub struct FrameReport {
 /// What a level camera would see. Apart from the rest, which is quick and has no use for its registers.
 #[cold]
 #[inline(never)]
-fn level_view(derotation: &Derotation, frame: &Frame, heading: f32, tilt: Tilt) -> Spectrum {
-    Spectrum::of(&derotation.horizon(frame, heading, tilt))
+fn level(derotation: &Derotation, frame: &Frame, heading: f32, tilt: Tilt) -> Horizon {
+    derotation.horizon(frame, heading, tilt)
+}
+
+/// What routes of fine snapshots see. Apart from the rest for the same reason.
+#[cold]
+#[inline(never)]
+fn detailed_view(horizon: &Horizon) -> Spectrum {
+    Spectrum::with_detail(horizon)
 }
 
 /// Eyes, memory and decisions.
@@ -147,9 +154,15 @@ impl Pilot {
     #[inline(never)]
     pub fn on_frame(&mut self, frame: &Frame) -> FrameReport {
         let (horizon, mean_luma) = self.map.horizon_and_band(frame, self.heading);
-        self.view = Some(match &self.derotation {
-            None => Spectrum::of(&horizon),
-            Some(derotation) => level_view(derotation, frame, self.heading, self.tilt),
+        let level = self
+            .derotation
+            .as_ref()
+            .map(|derotation| level(derotation, frame, self.heading, self.tilt));
+        let seen = level.as_ref().unwrap_or(&horizon);
+        self.view = Some(if self.navigator.needs_detail() {
+            detailed_view(seen)
+        } else {
+            Spectrum::of(seen)
         });
         FrameReport {
             mean_luma,
@@ -191,19 +204,30 @@ impl Pilot {
     /// Takes a command and says which mode holds now: the same byte if it was understood. An unknown
     /// one changes nothing.
     ///
-    /// The first argument, where there is one and it is not zero, is the way between two snapshots
-    /// along odometry from now on, in decimetres. The published client sends no arguments.
+    /// The published client sends no arguments. Those that follow, in this order, hold from now on; zero,
+    /// or none, leaves what is: the way between two snapshots along odometry, decimetres; the number of
+    /// the [`SnapshotFormat`] of the next route; how far a stored way may deviate from the one flown,
+    /// decimetres.
     fn on_command(&mut self, command: &link::Command, outbox: &mut Outbox) {
         let before = self.navigator.mode_byte();
         let understood = self.navigator.command(command.command).is_ok();
         if self.navigator.mode_byte() != before {
             self.continuity.look_again();
         }
-        if let (true, Some(decimetres)) = (understood, command.args.first()) {
-            self.navigator
-                .set_snapshot_spacing(f32::from(*decimetres) / 10.0);
+        if understood {
+            self.take_arguments(&command.args);
         }
         self.say_mode(outbox);
+    }
+
+    fn take_arguments(&mut self, arguments: &[u8]) {
+        let argument = |index: usize| arguments.get(index).copied().unwrap_or(0);
+        let metres = |decimetres: u8| f32::from(decimetres) / 10.0;
+        self.navigator.set_snapshot_spacing(metres(argument(0)));
+        if let Some(format) = SnapshotFormat::from_number(argument(1)) {
+            self.navigator.set_snapshot_format(format);
+        }
+        self.navigator.set_simplify_tolerance(metres(argument(2)));
     }
 
     fn on_state(&mut self, now_ms: u32, state: &State, outbox: &mut Outbox) -> Events {

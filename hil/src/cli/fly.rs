@@ -17,7 +17,7 @@ use crate::live::Stop;
 use crate::rig::file::Rig;
 use crate::rig::{BoardSetup, fly_board, probe};
 use crate::scenario::file::{self, ScenarioFile};
-use crate::scenario::{Homing, Route, Scenario, Spacing};
+use crate::scenario::{Deviation, Homing, Route, Scenario, SnapshotForm, Spacing, Storage};
 use crate::summary::{DirectionFigures, Summary};
 
 /// Share of late steps up to which a flight counts as one in real time.
@@ -58,6 +58,12 @@ pub struct ScenarioArguments {
     /// Metres between snapshots, in steps of 0.1; a sequence has its own spacing, 0.25 m
     #[arg(long, default_value = "2", value_parser = parse_spacing, value_name = "METRES")]
     pub spacing: Spacing,
+    /// How a snapshot is stored
+    #[arg(long, value_enum, default_value_t)]
+    pub snapshots: SnapshotForm,
+    /// How far the stored way may deviate from the one flown, in steps of 0.1 m
+    #[arg(long, default_value = "0.1", value_parser = parse_deviation, value_name = "METRES")]
+    pub deviation: Deviation,
     /// How the drone finds back
     #[arg(long, value_enum, default_value_t)]
     pub homing: Homing,
@@ -73,6 +79,10 @@ impl ScenarioArguments {
             world: self.world.clone(),
             seed,
             spacing: self.spacing,
+            storage: Storage {
+                snapshots: self.snapshots,
+                deviation: self.deviation,
+            },
             homing: self.homing,
             conditions: self.conditions.conditions(),
         }
@@ -88,12 +98,22 @@ fn parse_spacing(text: &str) -> Result<Spacing, String> {
         })
 }
 
+fn parse_deviation(text: &str) -> Result<Deviation, String> {
+    text.parse()
+        .ok()
+        .and_then(Deviation::from_metres)
+        .ok_or_else(|| {
+            "a distance from 0.1 to 1 metre in steps of 0.1; the paper has 0.1".to_owned()
+        })
+}
+
 /// Options of `hil fly`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     hil fly                                 the paper's U on the emulated board\n  \
     hil fly --backend native --seed 7       the same logic, without a processor\n  \
     hil fly --route s --spacing 1 --json    one JSON object on stdout\n  \
+    hil fly --snapshots lean --deviation 0.3 --spacing 7  a quarter of the bytes\n  \
     hil fly --route line --homing sequence  home by the camera alone\n  \
     hil fly tests/scenarios/u.toml --seed 7 one flight of a scenario\n  \
     hil fly --corrupt 1% --quirk self-acknowledge\n  \
@@ -103,7 +123,7 @@ fn parse_spacing(text: &str) -> Result<Spacing, String> {
     Exit code 0: the drone came home. 1: it did not. 2: the flight could not be flown.")]
 pub struct Arguments {
     /// A scenario: world, route, homing and conditions are its own
-    #[arg(value_name = "FILE.toml", conflicts_with_all = ["route", "world", "spacing", "homing", "ConditionArguments"])]
+    #[arg(value_name = "FILE.toml", conflicts_with_all = ["route", "world", "spacing", "snapshots", "deviation", "homing", "ConditionArguments"])]
     file: Option<PathBuf>,
     #[command(flatten)]
     scenario: ScenarioArguments,

@@ -186,7 +186,7 @@ fn fly(
     let expected_ms = expected_flight_ms(&route);
     let mut aircraft = Aircraft::new(scenario, &route);
     let mut wire = Wire::new(scenario.conditions.corrupted_share, scenario.seed);
-    let mut recorder = Recorder::new(blank(world, &route));
+    let mut recorder = Recorder::new(blank(world, scenario));
     let mut from_board = Vec::new();
     let mut log = Vec::new();
     let mut now_ms = 0;
@@ -247,13 +247,15 @@ fn fly(
 }
 
 /// What is known before a flight.
-pub(crate) fn blank(world: &World, route: &app::Route) -> Recording {
+pub(crate) fn blank(world: &World, scenario: &Scenario) -> Recording {
     let plan = world.plan().iter().map(|line| WallSegment {
         from: line.from_m.map(f64::from),
         to: line.to_m.map(f64::from),
     });
+    let route = scenario.route.waypoints();
     let places = route.waypoints.iter().map(|waypoint| waypoint.place);
     Recording {
+        snapshot_form: scenario.storage.snapshots,
         plan: plan.collect(),
         route: places
             .map(|place| [place.x.into(), place.y.into()])

@@ -14,7 +14,7 @@ pub use flight::{Run, fly};
 pub use picture::picture;
 
 use crate::metrics::quantile;
-use crate::scenario::{Conditions, Homing, Route, Scenario, Spacing};
+use crate::scenario::{Conditions, Homing, Route, Scenario, Spacing, Storage};
 
 /// Within this many metres a run counts as home, as in the paper.
 pub const NEAR_M: f64 = 0.5;
@@ -40,6 +40,7 @@ pub fn nominal(world: &str, seed: u64) -> Scenario {
         world: world.to_owned(),
         seed,
         spacing: Spacing::DEFAULT,
+        storage: Storage::PAPER,
         homing: Homing::default(),
         conditions: Conditions::default(),
     }

@@ -118,7 +118,7 @@ pub fn fly_attended(
         aircraft: Aircraft::new(scenario, &route),
         link: Port::open(&setup.common.link, setup.common.baud)?,
         pose: setup.pose.map(Port::open_tcp).transpose()?,
-        scribe: Scribe::new(flight::blank(&world, &route), say),
+        scribe: Scribe::new(flight::blank(&world, scenario), say),
         wire: Wire::new(scenario.conditions.corrupted_share, scenario.seed),
         spoken: Frames::default(),
         phase: Phase::Ground,

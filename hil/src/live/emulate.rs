@@ -13,7 +13,7 @@ use crate::flight::{self, Flown, sum_up};
 use crate::gdb;
 use crate::record::{Recording, Reference, Side};
 use crate::recorder::{Glimpse, Recorder};
-use crate::scenario::{Conditions, Route, Scenario, Spacing};
+use crate::scenario::{Conditions, Route, Scenario, Spacing, Storage};
 use crate::summary::{LiveFigures, Summary};
 
 use super::endpoint::PoseSource;
@@ -60,7 +60,7 @@ pub fn emulate(setup: &EmulateSetup, say: &dyn Fn(Notice)) -> Result<Flown, Live
     let camera = flight::camera(&scenario, &world, Tcm8230::default());
     let blank = Recording {
         route: Vec::new(),
-        ..flight::blank(&world, &scenario.route.waypoints())
+        ..flight::blank(&world, &scenario)
     };
     let mut session = Session {
         board: Emulated::boot(&firmware, camera)?,
@@ -97,6 +97,7 @@ fn scenario(setup: &EmulateSetup) -> Scenario {
         world: setup.world.clone(),
         seed: setup.seed,
         spacing: Spacing::DEFAULT,
+        storage: Storage::PAPER,
         homing: Default::default(),
         conditions: Conditions::default(),
     }
@@ -332,6 +333,7 @@ impl Session<'_, '_> {
         let live = self.live_figures(setup, pacer);
         self.scribe.report_pace(self.now_ms, &live.pace);
         let mut recording = self.scribe.recorder.finish();
+        recording.snapshot_form = self.watch.snapshot_form();
         if self.stood_on_belief || live.poses == 0 {
             recording.reference = Reference::Estimate;
         }

@@ -4,7 +4,7 @@ use autopilot::app;
 use link::{Command, InsCorrection, Message, Mode, Record, WorldPose};
 
 use crate::record::PlanarPose;
-use crate::scenario::{Homing, Spacing};
+use crate::scenario::{Homing, SnapshotForm, Spacing};
 
 /// Bit that separates following from recording in a command byte.
 const FOLLOWING: u8 = 0x10;
@@ -18,6 +18,8 @@ pub struct Watch {
     recorded: Option<u8>,
     /// The first argument of the newest recording command, dm.
     spacing_dm: Option<u8>,
+    /// What the last second argument asked for.
+    snapshot_form: SnapshotForm,
     estimate: PlanarPose,
     drift: Drift,
     finished: bool,
@@ -42,6 +44,10 @@ impl Watch {
     pub fn on_command(&mut self, command: &Command) {
         if records(command.command) {
             self.spacing_dm = command.args.first().copied().filter(|dm| *dm > 0);
+            let number = command.args.get(1).copied().unwrap_or(0);
+            if let Some(form) = SnapshotForm::from_number(number) {
+                self.snapshot_form = form;
+            }
         }
     }
 
@@ -110,6 +116,11 @@ impl Watch {
             .into_iter()
             .find(|homing| self.recorded == Some(Mode::Record(homing.record()).byte()))
             .unwrap_or_default()
+    }
+
+    /// How the snapshots of a route that is begun now are stored.
+    pub fn snapshot_form(&self) -> SnapshotForm {
+        self.snapshot_form
     }
 
     /// The way between two snapshots that was asked for.

@@ -5,6 +5,7 @@ pub mod expectation;
 pub mod file;
 mod lens;
 mod meander;
+mod storage;
 mod wire_fault;
 
 use autopilot::app::{self, Experiment, Script};
@@ -14,6 +15,7 @@ use link::{Record, WorldPoint};
 pub use conditions::{Conditions, Correction, LIGHTS, Quirk, STRONGEST_WIND_M_S, Wind};
 pub use lens::{LensFileError, LensPage};
 pub use meander::{Meander, NoWay};
+pub use storage::{Deviation, SnapshotForm, Storage};
 pub use wire_fault::{CameraTrouble, WireFault};
 
 /// The scripted way out.
@@ -145,6 +147,8 @@ pub struct Scenario {
     pub seed: u64,
     /// Between snapshots along odometry; a sequence has the firmware's own spacing.
     pub spacing: Spacing,
+    /// What the route memory makes of the way.
+    pub storage: Storage,
     /// How the drone finds back.
     pub homing: Homing,
     /// What the flight is up against.
@@ -157,8 +161,8 @@ impl Scenario {
         match &self.route {
             Route::Experiment(experiment) => experiment.script(Experiment::REPEATS),
             route => {
-                let spacing = [self.spacing.decimetres()];
-                Script::record_and_return(&route.waypoints(), self.homing.record(), &spacing)
+                let arguments = self.storage.arguments(self.spacing);
+                Script::record_and_return(&route.waypoints(), self.homing.record(), &arguments)
             }
         }
     }

@@ -14,7 +14,7 @@ use hil::rig::canary::canary;
 use hil::rig::file::Rig;
 use hil::rig::transcript::{Said, Snapshots, Taken, Transcript};
 use hil::rig::{BoardFlight, BoardSetup, Unready, fly_board, probe};
-use hil::scenario::{Route, Scenario, Spacing};
+use hil::scenario::{Route, Scenario, Spacing, Storage};
 
 use super::bench::{OnDesk, rig_image};
 
@@ -31,6 +31,7 @@ pub fn corner() -> Scenario {
         world: "arena-panels".to_owned(),
         seed: 1,
         spacing: Spacing::from_metres(0.5).expect("a spacing"),
+        storage: Storage::PAPER,
         homing: Default::default(),
         conditions: Default::default(),
     }

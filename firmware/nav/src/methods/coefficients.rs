@@ -5,6 +5,7 @@ use nalgebra::Complex;
 
 use super::{Luma, MOST_BYTES, Memory};
 use crate::horizon::BEARINGS;
+use crate::spectrum::Spectrum;
 
 /// Frequencies that a memory holds at most.
 pub const MOST_FREQUENCIES: usize = 32;
@@ -36,10 +37,28 @@ impl Harmonics {
         harmonics
     }
 
+    /// c_1..c_9.
+    pub fn lowest(&self) -> Spectrum {
+        Spectrum::from_coefficients(core::array::from_fn(|index| self.0[index]))
+    }
+
     /// Variance of the view's first `frequencies`, luma² (Parseval).
     pub fn variance(&self, frequencies: usize) -> f32 {
         let used = self.0.iter().take(frequencies);
         0.5 * used.map(Complex::norm_sqr).sum::<f32>()
+    }
+}
+
+/// The frequencies that a spectrum has; those beyond are zero.
+impl From<&Spectrum> for Harmonics {
+    fn from(view: &Spectrum) -> Self {
+        let mut harmonics = Self::NONE;
+        let detail = view.detail().into_iter().flat_map(|detail| &detail.0);
+        let known = view.coefficients().iter().chain(detail);
+        for (coefficient, known) in harmonics.0.iter_mut().zip(known) {
+            *coefficient = *known;
+        }
+        harmonics
     }
 }
 

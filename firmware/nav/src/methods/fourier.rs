@@ -176,7 +176,12 @@ fn coarse_rotation(
 }
 
 /// argmax over the rotations s of Σ w_k Re(c_k conj(t_k) e^{iks}).
-fn best_rotation(bound: u8, model: &Model<'_>, current: &Harmonics, stored: &Harmonics) -> f32 {
+pub(crate) fn best_rotation(
+    bound: u8,
+    model: &Model<'_>,
+    current: &Harmonics,
+    stored: &Harmonics,
+) -> f32 {
     let bound = i16::from(bound.min(64));
     let mut product = Harmonics::NONE;
     for index in 0..model.frequencies {

@@ -13,6 +13,9 @@ pub type Weights = [f32; MOST_FREQUENCIES];
 /// open, as along the uniform walls of a corridor, and costs nothing elsewhere.
 const DAMPING: f32 = 1e-4;
 
+/// Every frequency counts as it is.
+pub const FLAT_WEIGHTS: Weights = [1.0; MOST_FREQUENCIES];
+
 /// k^-power.
 pub fn power_law(power: f32) -> Weights {
     core::array::from_fn(|index| libm::powf((index + 1) as f32, -power))

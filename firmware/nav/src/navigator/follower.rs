@@ -172,7 +172,10 @@ impl Follower {
     ) {
         let run = HomingRun::new(context.now_ms, target, fallback);
         self.phase = Phase::Homing { run, done: false };
-        let snapshot = context.route.top_snapshot().map(|top| top.snapshot);
+        let snapshot = context
+            .route
+            .top_snapshot()
+            .map(|top| top.view.in_paper_form());
         let entry = map_entry(context.route, snapshot);
         step.report(Event::HomingStarted {
             index: entry.snapshot_index,

@@ -6,7 +6,7 @@ use super::parameters::{Parameters, has_passed};
 use super::step::{Arrival, Event, SetPoint, Source, Step};
 use crate::homing::{self, HomingVector, NoVectorReason};
 use crate::pose::Pose;
-use crate::snapshot::Snapshot;
+use crate::snapshot::StoredView;
 use crate::spectrum::Spectrum;
 
 /// Steps without a view, half a second, after which the camera counts as silent.
@@ -67,7 +67,7 @@ impl HomingRun {
     pub(super) fn step(
         &mut self,
         parameters: &Parameters,
-        snapshot: &Snapshot,
+        stored: &StoredView,
         pose: &Pose,
         view: Option<&Spectrum>,
         step: &mut Step,
@@ -76,7 +76,11 @@ impl HomingRun {
             Some(_) => 0,
             None => self.missing_views.saturating_add(1),
         };
-        match view.map(|view| homing::home(view, snapshot, &parameters.homing)) {
+        let homing = &parameters.homing;
+        match view.map(|view| match stored {
+            StoredView::Paper(snapshot) => homing::home(view, snapshot, homing),
+            StoredView::Packed(snapshot) => homing::home_packed(view, snapshot, homing),
+        }) {
             Some(Ok(vector)) => {
                 self.failure = None;
                 self.follow(parameters, pose, &vector);

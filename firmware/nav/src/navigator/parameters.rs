@@ -1,6 +1,8 @@
 //! The navigator's constants.
 
 use crate::homing::HomingParameters;
+use crate::route::SIMPLIFY_TOLERANCE_M;
+use crate::snapshot::SnapshotFormat;
 
 /// Half a STATE period (STATE comes every 100 ms): taken off every time-out, so that a millisecond of
 /// jitter never decides in which period it falls.
@@ -13,6 +15,10 @@ pub struct Parameters {
     pub snapshot_spacing_m: f32,
     /// Way between two snapshots of a purely visual sequence.
     pub sequence_spacing_m: f32,
+    /// How a route that is begun stores its views.
+    pub snapshot_format: SnapshotFormat,
+    /// How far the stored way may deviate from the one flown.
+    pub simplify_tolerance_m: f32,
     /// A point of the route counts as reached within this distance.
     pub acceptance_radius_m: f32,
     /// The distance R of the surroundings: metres of one unit of the homing vector.
@@ -71,6 +77,8 @@ impl Parameters {
     pub const DEFAULT: Self = Self {
         snapshot_spacing_m: 2.0,
         sequence_spacing_m: 0.25,
+        snapshot_format: SnapshotFormat::Paper,
+        simplify_tolerance_m: SIMPLIFY_TOLERANCE_M,
         acceptance_radius_m: 0.2,
         environment_radius_m: 1.5,
         homing_step_m: 0.3,

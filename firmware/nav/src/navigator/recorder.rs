@@ -7,7 +7,6 @@ use super::parameters::Parameters;
 use super::step::{Event, Step};
 use crate::pose::Pose;
 use crate::route::{Route, RouteFull, VECTOR_SPACING_M};
-use crate::snapshot::Snapshot;
 use crate::spectrum::Spectrum;
 
 /// Records from a command until the next.
@@ -62,7 +61,7 @@ impl Recorder {
         step: &mut Step,
     ) -> Result<(), RouteFull> {
         if self.corner.is_none() {
-            route.begin(position);
+            route.begin(position, parameters.snapshot_format);
         }
         if self.what.odometry && (position - route.tip()).norm() >= VECTOR_SPACING_M {
             route.extend_to(position)?;
@@ -70,7 +69,7 @@ impl Recorder {
         }
         self.measure(parameters, position);
         match view.filter(|view| self.snapshot_due && view.is_finite()) {
-            Some(view) => self.take_snapshot(route, position, view, step),
+            Some(view) => self.take_snapshot(parameters, route, position, view, step),
             None => Ok(()),
         }
     }
@@ -96,6 +95,7 @@ impl Recorder {
 
     fn take_snapshot(
         &mut self,
+        parameters: &Parameters,
         route: &mut Route,
         position: Point2<f32>,
         view: &Spectrum,
@@ -105,12 +105,11 @@ impl Recorder {
             // The vectors below a snapshot shall end where it is taken, not up to 0.3 m before.
             route.extend_to(position)?;
         }
-        let snapshot = Snapshot::quantise(view);
-        route.push_snapshot(snapshot)?;
+        let stored = route.push_snapshot(view, parameters.simplify_tolerance_m)?;
         self.snapshot_due = false;
         self.way_m = 0.0;
         self.corner = Some(position);
-        let entry = super::map_entry(route, Some(snapshot));
+        let entry = super::map_entry(route, Some(stored.in_paper_form()));
         step.report(Event::SnapshotTaken {
             index: entry.snapshot_index,
             height: entry.odometry_index,

@@ -8,10 +8,13 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::homing::NoVectorReason;
-use crate::route::SNAPSHOT_CAPACITY;
+use crate::snapshot::Packing;
 use crate::spectrum::VIEW_FREQUENCIES;
 
 const PERIOD_MS: u32 = 100;
+
+/// Snapshots of the paper's that fit.
+const SNAPSHOT_CAPACITY: usize = 512;
 
 /// A navigator, its clock and what it said.
 struct Bench {
@@ -460,4 +463,26 @@ proptest! {
             prop_assert!(is_sound(&step), "{:?}", step);
         }
     }
+}
+
+#[test]
+fn detail_is_asked_for_while_fine_snapshots_are_taken_or_followed() {
+    let fine = SnapshotFormat::Packed(Packing::Fine);
+    let mut bench = Bench::new();
+    bench.navigator.set_snapshot_format(fine);
+    assert!(!bench.navigator.needs_detail(), "nothing is recorded");
+    bench.record(0x03, 1.0);
+    assert!(bench.navigator.needs_detail());
+    assert_eq!(bench.navigator.route().snapshots().format(), fine);
+    bench.navigator.set_snapshot_format(SnapshotFormat::Paper);
+    bench.command(0x00);
+    assert!(!bench.navigator.needs_detail(), "idle");
+    bench.command(0x12);
+    assert!(bench.navigator.needs_detail(), "the route is what it was");
+    bench.command(0x0F);
+    bench.record(0x03, 1.0);
+    assert!(
+        !bench.navigator.needs_detail(),
+        "another route, another format"
+    );
 }

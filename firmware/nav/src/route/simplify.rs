@@ -1,10 +1,7 @@
 //! The algorithm of Ramer, Douglas and Peucker on odometry vectors, in place.
 
+use super::VECTOR_CAPACITY;
 use super::vector::{ODOMETRY_RESOLUTION_M, OdometryVector, pieces};
-use super::{SIMPLIFY_TOLERANCE_M, VECTOR_CAPACITY};
-
-/// The tolerance in counts.
-const TOLERANCE_COUNTS: f32 = SIMPLIFY_TOLERANCE_M / ODOMETRY_RESOLUTION_M;
 
 /// A set of the vertices that stay. Vertex i is the end of vector i.
 struct Kept([u32; Self::WORDS]);
@@ -26,8 +23,9 @@ impl Kept {
 }
 
 /// Replaces a polyline by one through fewer of its vertices, from which no dropped vertex is farther
-/// than the tolerance. Both ends stay. Returns how many vectors at the front of `part` are left.
-pub(super) fn simplify(part: &mut [OdometryVector]) -> usize {
+/// than the tolerance, metres. Both ends stay. Returns how many vectors at the front of `part` are left.
+pub(super) fn simplify(part: &mut [OdometryVector], tolerance_m: f32) -> usize {
+    let tolerance = tolerance_m / ODOMETRY_RESOLUTION_M;
     let Some(last) = part.len().checked_sub(1) else {
         return 0;
     };
@@ -37,6 +35,7 @@ pub(super) fn simplify(part: &mut [OdometryVector]) -> usize {
     let mut start = 0;
     while start <= last {
         let end = (start..=last).find(|&v| kept.contains(v)).unwrap_or(last);
+        let farthest = |chain| farthest(chain, tolerance);
         match part.get(start..=end).and_then(farthest) {
             Some(offset) => kept.insert(start + offset),
             None => start = end + 1,
@@ -45,15 +44,15 @@ pub(super) fn simplify(part: &mut [OdometryVector]) -> usize {
     merge(part, &kept)
 }
 
-/// The vertex farthest from the segment that `chain` spans, if farther than the tolerance.
-fn farthest(chain: &[OdometryVector]) -> Option<usize> {
+/// The vertex farthest from the segment that `chain` spans, if farther than the tolerance, counts.
+fn farthest(chain: &[OdometryVector], tolerance: f32) -> Option<usize> {
     let (mut end_x, mut end_y) = (0, 0);
     for vector in chain {
         end_x += i32::from(vector.x);
         end_y += i32::from(vector.y);
     }
     let (mut x, mut y) = (0, 0);
-    let mut worst = (None, TOLERANCE_COUNTS * TOLERANCE_COUNTS);
+    let mut worst = (None, tolerance * tolerance);
     let inner = chain.split_last().map_or(chain, |(_, inner)| inner);
     for (index, vector) in inner.iter().enumerate() {
         x += i32::from(vector.x);

@@ -78,6 +78,28 @@ fn the_first_argument_of_a_command_is_the_spacing_of_snapshots_in_decimetres() {
 }
 
 #[test]
+fn the_second_argument_is_the_format_of_snapshots_and_the_third_how_far_a_way_may_deviate() {
+    let settings = |bench: &Bench| {
+        let parameters = bench.pilot.navigator().parameters();
+        (
+            parameters.snapshot_format.number(),
+            parameters.simplify_tolerance_m,
+        )
+    };
+    let mut bench = Bench::new();
+    for (args, expected) in [
+        (&[20][..], (1, 0.1)),
+        (&[0, 3, 3], (3, 0.3)),
+        (&[0, 0, 0], (3, 0.3)),
+        (&[0, 4], (3, 0.3)),
+        (&[0, 2, 1], (2, 0.1)),
+    ] {
+        assert_eq!(bench.command(ROUTE, args), [mode(ROUTE)]);
+        assert_eq!(settings(&bench), expected, "after the arguments {args:?}");
+    }
+}
+
+#[test]
 fn the_mode_is_said_every_tenth_state_counted_from_the_last_time() {
     let mut bench = Bench::new();
     let spoke = |bench: &mut Bench| !bench.state(0.0, 0.0, 0.0).is_empty();

@@ -11,8 +11,8 @@ use toml::Spanned;
 use super::{Backend, Mistake, ScenarioFile, Seeds, Way};
 use crate::scenario::expectation::{Bounds, Expectation, Metric};
 use crate::scenario::{
-    CameraTrouble, Conditions, Correction, Homing, LIGHTS, Meander, Polyline, Quirk, Route,
-    STRONGEST_WIND_M_S, Spacing, Wind, WireFault,
+    CameraTrouble, Conditions, Correction, Deviation, Homing, LIGHTS, Meander, Polyline, Quirk,
+    Route, STRONGEST_WIND_M_S, SnapshotForm, Spacing, Storage, Wind, WireFault,
 };
 
 /// Lengths of a route that the memory of the camera board can hold, metres.
@@ -90,6 +90,9 @@ enum HomingName {
 #[serde(deny_unknown_fields)]
 struct RecordingTable {
     spacing: Option<Spanned<f64>>,
+    #[serde(default)]
+    snapshots: SnapshotForm,
+    deviation: Option<Spanned<f64>>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -137,6 +140,7 @@ impl Description {
     pub fn check(self, file: &Path) -> Result<ScenarioFile, Mistake> {
         let folder = file.parent().unwrap_or(Path::new("")).to_owned();
         let name = self.homing.as_ref().map(|name| *name.get_ref());
+        let storage = self.recording.storage()?;
         let (homing, spacing) = check_homing(name, self.recording)?;
         let way = check_route(self.route)?;
         if let Some(name) = self.homing {
@@ -172,6 +176,7 @@ impl Description {
             way,
             homing,
             spacing,
+            storage,
             conditions,
             folder,
             text: String::new(),
@@ -269,6 +274,28 @@ fn check_homing(
         (HomingName::Sequence, Some(spacing)) => Homing::SequenceEvery(spacing),
     };
     Ok((homing, asked.unwrap_or(Spacing::DEFAULT)))
+}
+
+impl RecordingTable {
+    fn storage(&self) -> Result<Storage, Mistake> {
+        let Some(metres) = &self.deviation else {
+            return Ok(Storage {
+                snapshots: self.snapshots,
+                ..Storage::PAPER
+            });
+        };
+        match Deviation::from_metres(*metres.get_ref()) {
+            Some(deviation) => Ok(Storage {
+                snapshots: self.snapshots,
+                deviation,
+            }),
+            None => {
+                let asked = metres.get_ref();
+                let reason = format!("a deviation of {asked} m: from 0.1 to 1 m in steps of 0.1");
+                Err((metres.span(), reason))
+            }
+        }
+    }
 }
 
 impl ConditionsTable {

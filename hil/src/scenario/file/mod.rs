@@ -17,7 +17,7 @@ use fake_sensors::world::World;
 use serde::{Deserialize, Serialize};
 
 use super::expectation::Expectation;
-use super::{Conditions, Homing, Meander, Polyline, Route, Scenario, Spacing};
+use super::{Conditions, Homing, Meander, Polyline, Route, Scenario, Spacing, Storage};
 use crate::flight::FlightError;
 use description::Description;
 
@@ -84,6 +84,7 @@ pub struct ScenarioFile {
     way: Way,
     homing: Homing,
     spacing: Spacing,
+    storage: Storage,
     conditions: Conditions,
     /// Where a world's file is looked for.
     folder: PathBuf,
@@ -190,6 +191,7 @@ impl ScenarioFile {
             world,
             seed,
             spacing: self.spacing,
+            storage: self.storage,
             homing: self.homing,
             conditions: self.conditions,
         })

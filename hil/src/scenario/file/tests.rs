@@ -1,4 +1,5 @@
 use super::*;
+use crate::scenario::SnapshotForm;
 
 const GOOD: &str = r#"
 meaning = "Round one corner"
@@ -8,6 +9,8 @@ seeds = { first = 3, count = 2 }
 
 [recording]
 spacing = 1.0
+snapshots = "lean"
+deviation = 0.3
 
 [conditions]
 wind = { mean = 1.5, turbulence = 0.2 }
@@ -47,6 +50,11 @@ fn a_file_says_what_is_flown() {
         (scenario.homing, scenario.spacing.metres()),
         (Homing::Both, 1.0)
     );
+    let storage = scenario.storage;
+    assert_eq!(
+        (storage.snapshots, storage.deviation.metres()),
+        (SnapshotForm::Lean, 0.3)
+    );
     let wind = scenario.conditions.wind.expect("wind");
     assert_eq!((wind.mean_m_s, wind.turbulence), (1.5, 0.2));
     assert!(scenario.conditions.quirks.self_acknowledge);
@@ -64,6 +72,8 @@ fn what_cannot_be_flown_is_refused_with_its_line_and_a_reason() {
             "unknown field `spaceing`",
         ),
         ("spacing = 1.0", "spacing = 0.25", 8, "steps of 0.1"),
+        ("deviation = 0.3", "deviation = 0.25", 10, "from 0.1 to 1 m"),
+        ("lean", "tiny", 9, "unknown variant `tiny`"),
         ("count = 2", "count = 0", 5, "0 seeds: from 1"),
         ("\"arena\"", "\"moon\"", 3, "no world `moon`: arena"),
         ("\"arena\"", "\"moon.toml\"", 3, "moon.toml"),
@@ -80,29 +90,29 @@ fn what_cannot_be_flown_is_refused_with_its_line_and_a_reason() {
             4,
             "from 3 to 2000 m",
         ),
-        ("mean = 1.5", "mean = 99", 11, "from 0 to 32 m/s"),
+        ("mean = 1.5", "mean = 99", 13, "from 0 to 32 m/s"),
         (
             "\"self-acknowledge\"",
             "\"none\"",
-            12,
+            14,
             "unknown variant `none`",
         ),
         (
             "home_error_m.p95",
             "home_error",
-            15,
+            17,
             "unknown variant `home_error`",
         ),
-        ("at_most = 0.5", "", 14, "`at_least` or `at_most`"),
+        ("at_most = 0.5", "", 16, "`at_least` or `at_most`"),
         (
             "at_most = 0.5",
             "at_most = 0.5\nat_least = 0.6",
-            14,
+            16,
             "beyond",
         ),
-        ("at_most = 0.5", "at_most = nan", 14, "no number"),
-        ("claim = 31", "claim = 99", 14, "1 to 36"),
-        ("reason = \"it is short\"", "", 14, "missing field `reason`"),
+        ("at_most = 0.5", "at_most = nan", 16, "no number"),
+        ("claim = 31", "claim = 99", 16, "1 to 36"),
+        ("reason = \"it is short\"", "", 16, "missing field `reason`"),
         ("spacing = 1.0", "spacing =", 8, ""),
     ] {
         let (line, said) = refused(line, by);
@@ -119,7 +129,7 @@ fn a_scenario_that_its_board_cannot_fly_is_refused() {
     assert!(reason.contains("native"), "{reason}");
     let fault = "camera_fault = { name = \"unplugged\", at = 10 }";
     let (line, reason) = refused("quirks = [\"self-acknowledge\"]", fault);
-    assert_eq!(line, 12);
+    assert_eq!(line, 14);
     assert!(reason.contains("no camera wires"), "{reason}");
 }
 

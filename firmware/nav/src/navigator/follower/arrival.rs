@@ -19,10 +19,9 @@ impl Follower {
         let Some(top) = context.route.top_snapshot() else {
             return by_odometry(run.target(), context.pose);
         };
-        let snapshot = top.snapshot;
         let set_point = run.step(
             context.parameters,
-            &snapshot,
+            &top.view,
             context.pose,
             context.view,
             step,

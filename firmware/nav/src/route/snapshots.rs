@@ -1,0 +1,112 @@
+//! The stack of snapshots, in no more bytes than its format takes.
+
+use heapless::Vec;
+
+use super::{RouteFull, StoredSnapshot};
+use crate::snapshot::{SnapshotFormat, StoredView};
+use crate::spectrum::Spectrum;
+
+/// Bytes of the stack: 1 km at the paper's spacing of 2 m, 9 kB of the microcontroller's 192 kB.
+pub const SNAPSHOT_STACK_BYTES: usize = 512 * (16 + HEIGHT_BYTES);
+
+/// Bytes of the number of odometry vectors below a snapshot.
+pub(super) const HEIGHT_BYTES: usize = size_of::<u16>();
+
+/// Snapshots of one format.
+#[derive(Clone, Debug)]
+pub struct SnapshotStack {
+    format: SnapshotFormat,
+    bytes: Vec<u8, SNAPSHOT_STACK_BYTES>,
+}
+
+impl SnapshotStack {
+    /// An empty stack.
+    pub(super) const fn new(format: SnapshotFormat) -> Self {
+        Self {
+            format,
+            bytes: Vec::new(),
+        }
+    }
+
+    /// The form of its views.
+    pub const fn format(&self) -> SnapshotFormat {
+        self.format
+    }
+
+    /// Lets an empty stack hold views of another form.
+    pub(super) fn adopt(&mut self, format: SnapshotFormat) {
+        if self.is_empty() {
+            self.format = format;
+        }
+    }
+
+    /// Bytes of one snapshot with its height.
+    pub const fn stride(&self) -> usize {
+        self.format.bytes() + HEIGHT_BYTES
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.bytes.len() / self.stride()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.bytes.is_empty()
+    }
+
+    /// Whether there is no room for another.
+    pub(super) fn is_full(&self) -> bool {
+        self.bytes.capacity() - self.bytes.len() < self.stride()
+    }
+
+    /// The snapshots, oldest first.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = StoredSnapshot> + ExactSizeIterator {
+        self.bytes
+            .chunks_exact(self.stride())
+            .map(|stored| self.read(stored))
+    }
+
+    /// The last.
+    pub fn last(&self) -> Option<StoredSnapshot> {
+        let below = self.bytes.len().checked_sub(self.stride())?;
+        Some(self.read(self.bytes.get(below..)?))
+    }
+
+    /// Stores a view in the stack's format, and its height; what is left of the view.
+    pub(super) fn push(&mut self, view: &Spectrum, height: u16) -> Result<StoredView, RouteFull> {
+        if self.is_full() {
+            return Err(RouteFull);
+        }
+        let view = StoredView::quantise(view, self.format);
+        let mut put = |bytes: &[u8]| self.bytes.extend_from_slice(bytes).map_err(|_| RouteFull);
+        put(&view.bytes())?;
+        put(&height.to_le_bytes())?;
+        Ok(view)
+    }
+
+    pub(super) fn pop(&mut self) -> Option<StoredSnapshot> {
+        let last = self.last()?;
+        self.bytes.truncate(self.bytes.len() - self.stride());
+        Some(last)
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.bytes.clear();
+    }
+
+    /// Bytes in use.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    fn read(&self, stored: &[u8]) -> StoredSnapshot {
+        let (view, height) = stored.split_at(self.format.bytes());
+        StoredSnapshot {
+            view: StoredView::from_bytes(self.format, view),
+            height: height
+                .first_chunk()
+                .map_or(0, |height| u16::from_le_bytes(*height)),
+        }
+    }
+}
