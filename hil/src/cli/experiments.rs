@@ -30,7 +30,7 @@ pub struct Arguments {
     /// How many seeds of each [default: as the files say]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     seeds: Option<u64>,
-    /// One of them alone: a scenario's name, board, drift, drift-model or elsewhere; repeatable
+    /// One of them alone: a scenario's name, board, drift, drift-model, homing-test or elsewhere; repeatable
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
     /// The board [default: as the files say]

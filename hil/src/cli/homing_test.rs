@@ -10,8 +10,7 @@ use super::Failure;
 use super::console::Console;
 use super::world;
 use crate::folder;
-use crate::homing_test::{self, NEAR_M, Run, Verdict};
-use crate::parallel;
+use crate::homing_test::{self, NEAR_M, STARTS, Verdict};
 
 /// Options of `hil homing-test`.
 #[derive(Debug, Args)]
@@ -61,24 +60,16 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
         folder::prepare(out).map_err(|error| unwritable(out, error))?;
     }
     let seeds = (0..arguments.seeds).map(|index| arguments.first.wrapping_add(index));
-    let starts = homing_test::starts_m();
-    let all: Vec<_> = seeds
-        .flat_map(|seed| starts.map(|start_m| (seed, start_m)))
-        .collect();
-    let mut progress = console.progress("Homing", all.len() as u64);
-    let runs = parallel::map(
-        &all,
-        |(seed, start_m)| {
-            let scenario = homing_test::nominal(&arguments.world, *seed);
-            homing_test::fly(&scenario, *start_m)
-        },
-        |done| progress.set(done as u64, || format!("{done} of {} runs", all.len())),
-    );
+    let flights = arguments.seeds * STARTS as u64;
+    let mut progress = console.progress("Homing", flights);
+    let runs = homing_test::fly_all(&arguments.world, seeds, |done| {
+        progress.set(done as u64, || format!("{done} of {flights} runs"));
+    })?;
     progress.finish();
-    let runs = runs.into_iter().collect::<Result<Vec<Run>, _>>()?;
-    let lines = all.iter().zip(&runs).map(|((seed, start_m), run)| Line {
-        seed: *seed,
-        start_m: *start_m,
+    let starts = homing_test::starts_m().into_iter().cycle();
+    let lines = runs.iter().zip(starts).map(|(run, start_m)| Line {
+        seed: run.seed,
+        start_m,
         end_error_m: run.end_error_m(),
     });
     let outcome = Outcome {

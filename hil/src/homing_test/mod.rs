@@ -13,7 +13,9 @@ use serde::Serialize;
 pub use flight::{Run, fly};
 pub use picture::picture;
 
+use crate::flight::FlightError;
 use crate::metrics::quantile;
+use crate::parallel;
 use crate::scenario::{Conditions, Homing, Route, Scenario, Spacing, Storage};
 
 /// Within this many metres a run counts as home, as in the paper.
@@ -21,7 +23,7 @@ pub const NEAR_M: f64 = 0.5;
 /// So many starts of each seed have to be home, as the paper's were.
 pub const ENOUGH: usize = 8;
 /// Starts round a snapshot, and how far away they are, in turn.
-const STARTS: usize = 9;
+pub const STARTS: usize = 9;
 const DISTANCES_M: [f64; 3] = [1.0, 1.5, 2.0];
 
 /// The starts: every 40 degrees, from the snapshot, north and west, metres.
@@ -44,6 +46,23 @@ pub fn nominal(world: &str, seed: u64) -> Scenario {
         homing: Homing::default(),
         conditions: Conditions::default(),
     }
+}
+
+/// Flies from every start of every seed, on all processors, in the order of seeds and starts. `done` hears
+/// how many have ended.
+///
+/// # Errors
+/// [`FlightError`] of the first run that could not be flown.
+pub fn fly_all(
+    world: &str,
+    seeds: impl Iterator<Item = u64>,
+    done: impl FnMut(usize),
+) -> Result<Vec<Run>, FlightError> {
+    let all: Vec<_> = seeds
+        .flat_map(|seed| starts_m().map(|start_m| (seed, start_m)))
+        .collect();
+    let one = |(seed, start_m): &(u64, [f64; 2])| fly(&nominal(world, *seed), *start_m);
+    parallel::map(&all, one, done).into_iter().collect()
 }
 
 /// What came of all runs.
