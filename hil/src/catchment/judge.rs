@@ -17,7 +17,7 @@ const GAIN: f32 = 0.3;
 /// Steps until a run is over: more than are needed to come to rest.
 const STEPS: usize = 80;
 
-/// How far from a snapshot runs end that start [`START_M`] from it, mean over the directions, metres. Other than
+/// How far from a snapshot runs end that start 0.3 m from it, mean over the directions, metres. Other than
 /// those that an area is made of they go slower the shorter the vectors are, and so come to rest.
 pub fn end_error_m(grid: &Grid, moves: &Field, goal_m: [f32; 2]) -> f64 {
     let runs = (0..STARTS).map(|start| {
