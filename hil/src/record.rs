@@ -84,7 +84,7 @@ pub struct SnapshotMark {
     pub believed: PlanarPose,
     /// Where it was taken.
     pub truth: PlanarPose,
-    /// a_1..a_8, b_1..b_8 in counts.
+    /// a_1..a_8, b_1..b_8 in counts of the paper's form, whatever the form of the route.
     pub coefficients: Vec<i8>,
 }
 

@@ -113,9 +113,9 @@ mod tests {
             ..HomingParameters::DEFAULT
         };
         for (h, turn) in [
-            ([0.05, -0.03], 0.0),
-            ([-0.02, 0.04], 0.3),
-            ([0.0, 0.0], -0.45),
+            ([0.12, -0.08], 0.0),
+            ([-0.07, 0.1], 0.3),
+            ([0.1, 0.0], -0.45),
         ] {
             let there = view(h, turn);
             for packing in [Packing::Fine, Packing::Lean] {
@@ -130,8 +130,9 @@ mod tests {
                 };
                 let off = vector.displacement - Vector2::new(x, y);
                 assert!(off.norm() < bound, "{packing:?} {h:?}: {vector:?}");
+                // 1.7 degrees, at moves twice as far as along a route.
                 assert!(
-                    (vector.rotation - turn as f32).abs() < 0.02,
+                    (vector.rotation - turn as f32).abs() < 0.03,
                     "{packing:?}: {vector:?}"
                 );
             }

@@ -3,11 +3,11 @@
 use heapless::Vec;
 
 use super::{RouteFull, StoredSnapshot};
-use crate::snapshot::{SnapshotFormat, StoredView};
+use crate::snapshot::{SNAPSHOT_BYTES, SnapshotFormat, StoredView};
 use crate::spectrum::Spectrum;
 
 /// Bytes of the stack: 1 km at the paper's spacing of 2 m, 9 kB of the microcontroller's 192 kB.
-pub const SNAPSHOT_STACK_BYTES: usize = 512 * (16 + HEIGHT_BYTES);
+pub const SNAPSHOT_STACK_BYTES: usize = 512 * (SNAPSHOT_BYTES + HEIGHT_BYTES);
 
 /// Bytes of the number of odometry vectors below a snapshot.
 pub(super) const HEIGHT_BYTES: usize = size_of::<u16>();
