@@ -41,3 +41,4 @@ pub mod size;
 pub mod steps;
 pub mod summary;
 pub mod sweep;
+pub mod toml_file;

@@ -1,7 +1,5 @@
 //! The description of a rig: a TOML file that says what is connected to what.
 
-use std::fs;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use frames::ImageKind;
@@ -10,6 +8,7 @@ use toml::Spanned;
 
 use crate::image::{self, Variant};
 use crate::live::TcpPort;
+use crate::toml_file::{self, FileError, Mistake};
 
 /// What probe-rs calls the chip of both boards.
 pub const CHIP: &str = "STM32F407VGTx";
@@ -92,24 +91,9 @@ pub enum RigError {
         /// Where it was looked for.
         tried: Vec<PathBuf>,
     },
-    /// The file cannot be read.
-    #[error("{}: {source}", file.display())]
-    Unreadable {
-        /// Which.
-        file: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
     /// The file describes no rig.
-    #[error("{}:{line}: {reason}", file.display())]
-    Mistake {
-        /// Which.
-        file: PathBuf,
-        /// From 1.
-        line: usize,
-        /// What is wrong there.
-        reason: String,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 /// The file as it stands.
@@ -160,9 +144,6 @@ struct PowerTable {
     cycle: Spanned<Vec<String>>,
 }
 
-/// What is wrong, and the bytes of the text that it is about.
-type Mistake = (Range<usize>, String);
-
 impl Rig {
     /// Reads a rig by the path of its file, or by its name: `rigs/NAME.toml` in the working directory,
     /// else in the checkout's examples.
@@ -171,30 +152,17 @@ impl Rig {
     /// [`RigError`] with file and line.
     pub fn open(name: &str) -> Result<Self, RigError> {
         let file = find(name)?;
-        let text = fs::read_to_string(&file).map_err(|source| RigError::Unreadable {
-            file: file.clone(),
-            source,
-        })?;
+        let text = toml_file::read(&file)?;
         Self::parse(&file, &text)
     }
 
     /// Reads the text of a rig's file.
     ///
     /// # Errors
-    /// [`RigError::Mistake`].
+    /// [`RigError::File`].
     pub fn parse(file: &Path, text: &str) -> Result<Self, RigError> {
-        let read = toml::from_str::<Description>(text)
-            .map_err(|error| (error.span().unwrap_or_default(), error.message().to_owned()));
-        read.and_then(|description| description.check(file))
-            .map_err(|(span, reason)| RigError::Mistake {
-                file: file.to_owned(),
-                line: 1 + text
-                    .bytes()
-                    .take(span.start)
-                    .filter(|byte| *byte == b'\n')
-                    .count(),
-                reason,
-            })
+        let check = |description: Description| description.check(file);
+        Ok(toml_file::parse(file, text, check)?)
     }
 
     /// The image that belongs on its board.

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::shard::VERSION;
 use crate::flight::Flown;
 use crate::folder;
-use crate::scenario::file::{Backend, ScenarioError, ScenarioFile};
+use crate::scenario::file::{Backend, ScenarioFile};
+use crate::toml_file::FileError;
 
 /// The file in a flight's folder that says how to fly it again.
 const FILE: &str = "replay.toml";
@@ -56,7 +57,7 @@ pub enum ReplayError {
     },
     /// The scenario in it is none.
     #[error(transparent)]
-    Scenario(#[from] ScenarioError),
+    Scenario(#[from] FileError),
 }
 
 /// Leaves a flight's folder with what is needed to fly it again.

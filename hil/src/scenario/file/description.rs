@@ -8,12 +8,13 @@ use fake_sensors::world::World;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Backend, Mistake, ScenarioFile, Seeds, Way};
+use super::{Backend, ScenarioFile, Seeds, Way};
 use crate::scenario::expectation::{Bounds, Expectation, Metric};
 use crate::scenario::{
     CameraTrouble, Conditions, Correction, Deviation, Homing, LIGHTS, Meander, Polyline, Quirk,
     Route, STRONGEST_WIND_M_S, SnapshotForm, Spacing, Storage, Wind, WireFault,
 };
+use crate::toml_file::Mistake;
 
 /// Lengths of a route that the memory of the camera board can hold, metres.
 const LENGTHS_M: RangeInclusive<f32> = 3.0..=2_000.0;

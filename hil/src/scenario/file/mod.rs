@@ -8,7 +8,6 @@ mod description;
 mod tests;
 
 use std::fs;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -19,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use super::expectation::Expectation;
 use super::{Conditions, Homing, Meander, Polyline, Route, Scenario, Spacing, Storage};
 use crate::flight::FlightError;
+use crate::toml_file::{self, FileError};
 use description::Description;
 
 /// A board that flies in virtual time.
@@ -92,69 +92,31 @@ pub struct ScenarioFile {
     text: String,
 }
 
-/// A file that describes no scenario.
-#[derive(Debug, thiserror::Error)]
-pub enum ScenarioError {
-    /// The file cannot be read.
-    #[error("{}: {source}", file.display())]
-    Unreadable {
-        /// Which.
-        file: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The file says something that cannot be flown.
-    #[error("{}:{line}: {reason}", file.display())]
-    Mistake {
-        /// Which.
-        file: PathBuf,
-        /// From 1.
-        line: usize,
-        /// What is wrong there.
-        reason: String,
-    },
-}
-
-/// What is wrong, and the bytes of the text that it is about.
-type Mistake = (Range<usize>, String);
-
 impl ScenarioFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`ScenarioError`] with the file, and the line where something is wrong.
-    pub fn open(file: &Path) -> Result<Self, ScenarioError> {
-        let text = fs::read_to_string(file).map_err(|source| ScenarioError::Unreadable {
-            file: file.to_owned(),
-            source,
-        })?;
-        Self::parse(file, text)
+    /// [`FileError`] with the file, and the line where something is wrong.
+    pub fn open(file: &Path) -> Result<Self, FileError> {
+        Self::parse(file, toml_file::read(file)?)
     }
 
     /// Reads a text as if it stood in that file; the file of a world is looked for beside it.
     ///
     /// # Errors
-    /// [`ScenarioError::Mistake`].
-    pub fn parse(file: &Path, text: String) -> Result<Self, ScenarioError> {
-        let read = toml::from_str::<Description>(&text)
-            .map_err(|error| (error.span().unwrap_or_default(), error.message().to_owned()))
-            .and_then(|description| description.check(file));
-        match read {
-            Ok(scenario) => Ok(Self { text, ..scenario }),
-            Err((span, reason)) => Err(ScenarioError::Mistake {
-                file: file.to_owned(),
-                line: line_of(&text, &span),
-                reason,
-            }),
-        }
+    /// [`FileError::Mistake`].
+    pub fn parse(file: &Path, text: String) -> Result<Self, FileError> {
+        let check = |description: Description| description.check(file);
+        let scenario = toml_file::parse(file, &text, check)?;
+        Ok(Self { text, ..scenario })
     }
 
     /// Every file of a folder, by name.
     ///
     /// # Errors
-    /// [`ScenarioError`] of the first that describes no scenario, or where the folder cannot be read.
-    pub fn open_all(folder: &Path) -> Result<Vec<Self>, ScenarioError> {
-        let unreadable = |source| ScenarioError::Unreadable {
+    /// [`FileError`] of the first that describes no scenario, or where the folder cannot be read.
+    pub fn open_all(folder: &Path) -> Result<Vec<Self>, FileError> {
+        let unreadable = |source| FileError::Unreadable {
             file: folder.to_owned(),
             source,
         };
@@ -231,10 +193,4 @@ impl ScenarioFile {
             self.world.clone()
         }
     }
-}
-
-/// The line, from 1, on which a span of a text begins.
-fn line_of(text: &str, span: &Range<usize>) -> usize {
-    let before = text.bytes().take(span.start);
-    1 + before.filter(|byte| *byte == b'\n').count()
 }

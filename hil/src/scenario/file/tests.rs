@@ -23,7 +23,7 @@ claim = 31
 reason = "it is short"
 "#;
 
-fn parse(text: &str) -> Result<ScenarioFile, ScenarioError> {
+fn parse(text: &str) -> Result<ScenarioFile, FileError> {
     ScenarioFile::parse(Path::new("somewhere/corner.toml"), text.to_owned())
 }
 
@@ -31,7 +31,7 @@ fn parse(text: &str) -> Result<ScenarioFile, ScenarioError> {
 fn refused(line: &str, by: &str) -> (usize, String) {
     assert!(GOOD.contains(line), "{line}");
     match parse(&GOOD.replace(line, by)) {
-        Err(ScenarioError::Mistake { line, reason, .. }) => (line, reason),
+        Err(FileError::Mistake { line, reason, .. }) => (line, reason),
         other => panic!("{by}: {other:?}"),
     }
 }
