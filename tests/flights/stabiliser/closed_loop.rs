@@ -5,7 +5,7 @@ use fake_sensors::motion::SensorModel;
 use hil::steps::Stand;
 use nalgebra::Vector3;
 
-use crate::{hold, ramp};
+use super::{hold, ramp};
 
 /// In the air above the start.
 fn airborne(seed: u64) -> Stand {

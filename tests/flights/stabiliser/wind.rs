@@ -26,7 +26,7 @@ use hil::steps::{self, Hover, Stand};
 use nalgebra::{SVector, Vector3};
 use tests::Budgets;
 
-use crate::{hold, ramp};
+use super::{hold, ramp};
 
 /// The largest drag over mass that is published for a Brushless, at 56 g, 1/s (RotorPy, after Folk 2026).
 const LARGEST_DRAG_PER_S: f64 = 0.67;

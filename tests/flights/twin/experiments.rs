@@ -5,7 +5,7 @@
 use autopilot::app::{Experiment, Outcome, Phase, Script, Settings, Step};
 use nalgebra::Point2;
 
-use crate::rig::{self, Flown};
+use super::rig::{self, Flown};
 
 /// The arena without panels, from a place where an experiment of some metres to the north fits.
 const SOUTH_END: (&str, [f64; 2]) = ("arena", [-6.5, -2.0]);

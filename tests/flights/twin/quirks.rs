@@ -4,7 +4,7 @@
 use autopilot::app::{DropReason, Dropped, Outcome, Phase, Quirks, Route, Script, Settings};
 use link::{Camera, InsCorrection, Message, Record, Vector, WorldPoint};
 
-use crate::rig::{self, Flown, To, Wire};
+use super::rig::{self, Flown, To, Wire};
 
 /// The command that begins recording.
 const RECORD: u8 = 0x03;

@@ -1,7 +1,7 @@
 //! What a frame costs the core, stage by stage: the flight's own code on the emulated Cortex-M4 with
 //! the flash and the wait states of the flight. And that it sees there what it sees here, to the bit.
 //!
-//! The table is printed with `cargo test --test vision_cycles -- --nocapture`.
+//! The table is printed with `cargo test --test cycles vision -- --nocapture`.
 
 mod bench;
 mod sights;

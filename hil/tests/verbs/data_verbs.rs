@@ -1,69 +1,22 @@
 //! The verbs that hold us against data: drift, ekf-replay, link-check.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn hil(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hil"))
-        .args(arguments)
-        .output()
-        .expect("the command starts")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn json(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("one JSON object")
-}
-
-fn golden(name: &str) -> PathBuf {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .expect("the workspace");
-    root.join("tests/golden/data").join(name)
-}
-
-/// A folder for one test, gone after it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("hil-{name}-{}", std::process::id()));
-        fs::create_dir_all(&path).expect("a folder for the test");
-        Self(path)
-    }
-
-    fn join(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("a path in UTF-8")
-}
+use super::bench::{Folder, golden, hil, json, stderr};
 
 /// The hover recording without its truth, under another name.
-fn copy_of_the_hover(folder: &Folder) -> PathBuf {
+fn copy_of_the_hover(folder: &Folder) -> String {
     for part in ["imu", "events", "ekf"] {
         let from = golden(&format!("ekf/g1_hover.{part}.csv"));
-        fs::copy(from, folder.join(&format!("mine.{part}.csv"))).expect("a copy");
+        fs::copy(from, folder.file(&format!("mine.{part}.csv"))).expect("a copy");
     }
-    folder.join("mine")
+    folder.file("mine")
 }
 
 /// Replaces the first `from` of a file.
-fn tamper(path: &Path, from: &str, to: &str) {
+fn tamper(path: &str, from: &str, to: &str) {
     let text = fs::read_to_string(path).expect("the file");
     assert!(text.contains(from), "{from:?} is not in the file");
     fs::write(path, text.replacen(from, to, 1)).expect("the file is rewritten");
@@ -71,7 +24,7 @@ fn tamper(path: &Path, from: &str, to: &str) {
 
 #[test]
 fn ekf_replay_says_how_far_the_filter_strays_and_that_it_is_within() {
-    let output = hil(&["ekf-replay", text(&golden("ekf/g1_hover")), "--json"]);
+    let output = hil(&["ekf-replay", &golden("ekf/g1_hover"), "--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let report = json(&output);
     for (field, limit) in [
@@ -88,19 +41,13 @@ fn ekf_replay_says_how_far_the_filter_strays_and_that_it_is_within() {
 
 #[test]
 fn ekf_replay_needs_no_truth_and_fails_by_exit_code_when_the_filter_strays() {
-    let folder = Folder::new("replay-strays");
+    let folder = Folder::new();
     let prefix = copy_of_the_hover(&folder);
-    let output = hil(&["ekf-replay", text(&prefix)]);
+    let output = hil(&["ekf-replay", &prefix]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(String::from_utf8_lossy(&output.stdout).contains("position"));
 
-    let output = hil(&[
-        "ekf-replay",
-        text(&prefix),
-        "--initial-yaw",
-        "-0.5",
-        "--json",
-    ]);
+    let output = hil(&["ekf-replay", &prefix, "--initial-yaw", "-0.5", "--json"]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert_eq!(json(&output)["within"], false);
     let attitude = json(&output)["attitude_rad"].as_f64().expect("an angle");
@@ -148,10 +95,10 @@ fn ekf_replay_names_file_and_line_of_what_it_cannot_read() {
             "mine.ekf.csv:3: tick 20000 ms is behind the last",
         ),
     ] {
-        let folder = Folder::new(&format!("replay-{part}-{}", to.len()));
+        let folder = Folder::new();
         let prefix = copy_of_the_hover(&folder);
-        tamper(&folder.join(&format!("mine.{part}.csv")), from, to);
-        let output = hil(&["ekf-replay", text(&prefix)]);
+        tamper(&folder.file(&format!("mine.{part}.csv")), from, to);
+        let output = hil(&["ekf-replay", &prefix]);
         assert_eq!(output.status.code(), Some(2), "{place}");
         assert!(stderr(&output).contains(place), "{}", stderr(&output));
     }
@@ -163,21 +110,21 @@ fn ekf_replay_names_file_and_line_of_what_it_cannot_read() {
 
 #[test]
 fn link_check_counts_and_names_what_fails() {
-    let output = hil(&["link-check", text(&golden("pprzlink.jsonl")), "--json"]);
+    let output = hil(&["link-check", &golden("pprzlink.jsonl"), "--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let report = json(&output);
     assert_eq!(report["records"], 192);
     assert_eq!(report["failed"], serde_json::json!([]));
 
-    let folder = Folder::new("link-check");
-    let file = folder.join("records.jsonl");
+    let folder = Folder::new();
+    let file = folder.file("records.jsonl");
     fs::copy(golden("pprzlink.jsonl"), &file).expect("a copy");
     tamper(&file, "\"msg\": [109,", "\"msg\": [110,");
-    let output = hil(&["link-check", text(&file), "--json"]);
+    let output = hil(&["link-check", &file, "--json"]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let failed = serde_json::json!(["valid/IMCU_DEBUG/typ/1"]);
     assert_eq!(json(&output)["failed"], failed);
-    let output = hil(&["link-check", text(&file)]);
+    let output = hil(&["link-check", &file]);
     let words = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(words.contains("valid/IMCU_DEBUG/typ/1: "), "{words}");
     assert!(words.contains("191 of 192 records hold"), "{words}");
@@ -193,8 +140,8 @@ fn link_check_names_the_line_of_what_it_cannot_read() {
             "\"sent\": {{\"name\": \"VISUALHOMING_COMMAND\", \"sender\": 0, \"receiver\": 0, \"fields\": {fields}}}, "
         )
     };
-    let folder = Folder::new("link-check-malformed");
-    let file = folder.join("records.jsonl");
+    let folder = Folder::new();
+    let file = folder.file("records.jsonl");
     let good = record("", "");
     for (bad, why) in [
         ("{".to_owned(), "EOF"),
@@ -224,7 +171,7 @@ fn link_check_names_the_line_of_what_it_cannot_read() {
         ),
     ] {
         fs::write(&file, format!("{good}\n\n{bad}\n")).expect("the file is written");
-        let output = hil(&["link-check", text(&file)]);
+        let output = hil(&["link-check", &file]);
         assert_eq!(output.status.code(), Some(2), "{bad}");
         let message = stderr(&output);
         assert!(message.contains("records.jsonl: line 3: "), "{message}");
@@ -232,7 +179,7 @@ fn link_check_names_the_line_of_what_it_cannot_read() {
     }
 
     fs::write(&file, "\n").expect("the file is written");
-    let output = hil(&["link-check", text(&file)]);
+    let output = hil(&["link-check", &file]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("no record"));
     let output = hil(&["link-check", "no/such/file"]);
@@ -242,7 +189,7 @@ fn link_check_names_the_line_of_what_it_cannot_read() {
 
 #[test]
 fn drift_gives_a_row_for_each_distance_and_leaves_a_picture() {
-    let folder = Folder::new("drift");
+    let folder = Folder::new();
     let output = hil(&[
         "drift",
         "--seeds",
@@ -251,7 +198,7 @@ fn drift_gives_a_row_for_each_distance_and_leaves_a_picture() {
         "2,0.5,1,2",
         "--json",
         "--out",
-        text(&folder.0),
+        &folder.file(""),
     ]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let report = json(&output);
@@ -267,10 +214,10 @@ fn drift_gives_a_row_for_each_distance_and_leaves_a_picture() {
         assert_eq!(row.as_object().map(serde_json::Map::len), Some(5));
     }
     assert_eq!(report["published"].as_array().map(Vec::len), Some(2));
-    let svg = fs::read_to_string(folder.join("drift.svg")).expect("a picture");
+    let svg = fs::read_to_string(folder.file("drift.svg")).expect("a picture");
     assert!(svg.starts_with("<svg") && svg.contains("</svg>"));
     let written: Value =
-        serde_json::from_slice(&fs::read(folder.join("drift.json")).expect("the table"))
+        serde_json::from_slice(&fs::read(folder.file("drift.json")).expect("the table"))
             .expect("JSON");
     assert_eq!(written, report);
 }

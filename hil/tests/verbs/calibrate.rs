@@ -1,47 +1,19 @@
 //! `hil calibrate` on files.
 
 use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
 use fake_sensors::camera::{Exposure, Moment, PanoramicCamera, PanoramicLens, Pose};
 use fake_sensors::world::World;
 use hil::scenario::LensPage;
 use image::GrayImage;
 use nalgebra::{UnitQuaternion, Vector3};
-use serde_json::Value;
 
-/// A folder for one test, gone after it.
-struct Folder(PathBuf);
+use super::bench::{Folder, hil, json, stderr};
 
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path =
-            std::env::temp_dir().join(format!("hil-calibrate-{name}-{}", std::process::id()));
-        fs::create_dir_all(&path).expect("a folder for the test");
-        Self(path)
-    }
-
-    fn path(&self, name: &str) -> String {
-        let path = self.0.join(name);
-        path.to_str().expect("a path in UTF-8").to_owned()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-fn hil(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hil"));
-    let output = command.arg("calibrate").args(arguments).output();
-    output.expect("the command starts")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+fn calibrate(arguments: &[&str]) -> Output {
+    hil(&[&["calibrate"], arguments].concat())
 }
 
 /// A frame of a lens that is mounted off the middle, the drone turned to the left by `yaw` radians.
@@ -75,19 +47,19 @@ fn save(frame: &[u8], path: &str) {
 
 #[test]
 fn a_spin_of_png_pgm_and_raw_frames_gives_a_record_that_the_firmware_takes() {
-    let folder = Folder::new("spin");
-    let [png, pgm, raw] = ["a.png", "b.pgm", "c.yuv"].map(|name| folder.path(name));
+    let folder = Folder::new();
+    let [png, pgm, raw] = ["a.png", "b.pgm", "c.yuv"].map(|name| folder.file(name));
     save(&frame(0.0), &png);
     save(&frame(1.5), &pgm);
     fs::write(&raw, frame(3.0)).expect("the frame is written");
-    let [out, plot] = ["lens.bin", "lens.svg"].map(|name| folder.path(name));
+    let [out, plot] = ["lens.bin", "lens.svg"].map(|name| folder.file(name));
     let arguments = [&png, &pgm, &raw, "--json", "--out", &out, "--plot", &plot];
-    let output = hil(&arguments.map(AsRef::as_ref));
+    let output = calibrate(&arguments.map(AsRef::as_ref));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let flash = "--binary-format bin --base-address 0x080E0000";
     assert!(stderr(&output).contains(flash), "{}", stderr(&output));
 
-    let report: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let report = json(&output);
     assert_eq!(report["holds"], true);
     assert_eq!(report["direction_found"], true);
     assert_eq!(
@@ -107,10 +79,10 @@ fn a_spin_of_png_pgm_and_raw_frames_gives_a_record_that_the_firmware_takes() {
 
 #[test]
 fn what_the_pictures_do_not_tell_comes_from_the_options() {
-    let folder = Folder::new("options");
-    let (png, out) = (folder.path("a.png"), folder.path("lens.bin"));
+    let folder = Folder::new();
+    let (png, out) = (folder.file("a.png"), folder.file("lens.bin"));
     save(&frame(0.0), &png);
-    let output = hil(&[
+    let output = calibrate(&[
         &png,
         "--out",
         &out,
@@ -137,15 +109,15 @@ fn what_the_pictures_do_not_tell_comes_from_the_options() {
 
 #[test]
 fn a_bad_picture_is_named_with_the_reason() {
-    let folder = Folder::new("bad");
-    let path = |name| folder.path(name);
+    let folder = Folder::new();
+    let path = |name| folder.file(name);
     GrayImage::new(160, 120)
         .save(path("large.png"))
         .expect("a picture");
     GrayImage::new(128, 96)
         .save(path("black.png"))
         .expect("a picture");
-    fs::write(path("text.png"), "not a picture").expect("a file");
+    folder.with("text.png", "not a picture");
     for (name, reason) in [
         ("none.png", "No such file"),
         ("text.png", "neither PNG, JPEG or PGM nor a raw frame"),
@@ -153,27 +125,22 @@ fn a_bad_picture_is_named_with_the_reason() {
         ("black.png", "no contrast"),
     ] {
         let (picture, out) = (path(name), path("lens.bin"));
-        let output = hil(&[&picture, "--out", &out]);
+        let output = calibrate(&[&picture, "--out", &out]);
         assert_eq!(output.status.code(), Some(2), "{name}");
         let message = stderr(&output);
         assert!(
             message.contains(&picture) && message.contains(reason),
             "{message}"
         );
-        assert!(!PathBuf::from(out).exists(), "{name}");
+        assert!(!Path::new(&out).exists(), "{name}");
     }
 }
 
 #[test]
 fn fly_refuses_a_record_that_the_firmware_would_not_take() {
-    let folder = Folder::new("refused");
-    let bad = folder.path("bad.bin");
-    fs::write(&bad, [0xff; 48]).expect("a file");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hil"));
-    let output = command
-        .args(["fly", "--lens", &bad])
-        .output()
-        .expect("it starts");
+    let folder = Folder::new();
+    let bad = folder.with("bad.bin", [0xff; 48]);
+    let output = hil(&["fly", "--lens", &bad]);
     assert_eq!(output.status.code(), Some(2));
     let message = stderr(&output);
     assert!(

@@ -1,7 +1,7 @@
 //! What a received byte costs the core: the link's parser alone, on the emulated Cortex-M4 with the
 //! flash and the wait states of the flight.
 //!
-//! The table is printed with `cargo test --test link_cycles -- --nocapture`.
+//! The table is printed with `cargo test --test cycles link -- --nocapture`.
 
 mod bench;
 mod streams;

@@ -1,8 +1,7 @@
 //! The scenario library, and the verbs that fly it: fly, sweep, merge, replay, experiments.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 use std::sync::OnceLock;
 
 use hil::experiments::{self, COMPUTED};
@@ -11,6 +10,8 @@ use hil::parallel;
 use hil::scenario::file::{Backend, ScenarioFile};
 use hil::sweep::{FlightFigures, Outcome, Vessel, fly_each};
 use serde_json::Value;
+
+use super::bench::{Folder, hil, json, stderr};
 
 /// Scenarios whose flights take many seconds, some of them minutes: flown by `hil experiments` alone.
 const LONG: [&str; 13] = [
@@ -53,47 +54,6 @@ fn image() -> &'static [u8] {
         let path = hil::image::build(&|_| ()).expect("the firmware builds");
         fs::read(path).expect("the image is there")
     })
-}
-
-fn hil(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hil"))
-        .args(arguments)
-        .output()
-        .expect("the command starts")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn json(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", stderr(output)))
-}
-
-/// A folder for one test, gone after it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("hil-{name}-{}", std::process::id()));
-        fs::create_dir_all(&path).expect("a folder for the test");
-        Self(path)
-    }
-
-    fn file(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-
-    fn with(&self, name: &str, text: &str) -> String {
-        fs::write(self.0.join(name), text).expect("a file for the test");
-        self.file(name)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
 }
 
 /// The outcome of a scenario's first seed.
@@ -145,7 +105,7 @@ fn every_claim_of_the_paper_has_a_row() {
 
 #[test]
 fn a_flight_that_fails_is_named_with_both_figures_and_replayed_to_the_byte() {
-    let folder = Folder::new("failed");
+    let folder = Folder::new();
     let hopeless = CORNER.replace("at_most = 0.5", "at_most = 0.01");
     let file = folder.with("hopeless.toml", &hopeless.replace("count = 3", "count = 1"));
     let output = hil(&["sweep", &file, "--json", "--out", &folder.file("out")]);
@@ -175,7 +135,7 @@ fn a_flight_that_fails_is_named_with_both_figures_and_replayed_to_the_byte() {
 
 #[test]
 fn shards_put_together_are_the_sweep_and_nothing_else_is_taken_for_one() {
-    let folder = Folder::new("shards");
+    let folder = Folder::new();
     let file = folder.with("corner.toml", CORNER);
     let out = folder.file("out");
     let whole = hil(&["sweep", &file, "--json", "--out", &folder.file("whole")]);
@@ -217,7 +177,7 @@ fn shards_put_together_are_the_sweep_and_nothing_else_is_taken_for_one() {
 
 #[test]
 fn a_sweep_names_its_figures_as_scripts_expect() {
-    let folder = Folder::new("names");
+    let folder = Folder::new();
     let file = folder.with("corner.toml", CORNER);
     let out = folder.file("out");
     let output = hil(&["sweep", &file, "--flights", "1", "--json", "--out", &out]);
@@ -236,7 +196,7 @@ fn a_sweep_names_its_figures_as_scripts_expect() {
 
 #[test]
 fn a_wrong_file_gets_its_line_and_a_reason() {
-    let folder = Folder::new("wrong");
+    let folder = Folder::new();
     let file = folder.with("wrong.toml", &CORNER.replace("count = 3", "count = 0"));
     for verb in ["fly", "sweep"] {
         let output = hil(&[verb, &file]);
@@ -248,7 +208,7 @@ fn a_wrong_file_gets_its_line_and_a_reason() {
 
 #[test]
 fn a_file_is_flown_as_it_says_and_nothing_beside_it() {
-    let folder = Folder::new("fly");
+    let folder = Folder::new();
     let file = folder.with("corner.toml", CORNER);
     let output = hil(&[
         "fly",

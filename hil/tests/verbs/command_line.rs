@@ -1,48 +1,8 @@
 //! The command as its users meet it: exit codes, streams and messages.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
-fn hil(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hil"))
-        .args(arguments)
-        .output()
-        .expect("the command starts")
-}
-
-/// A folder for one test, gone after it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        Self(std::env::temp_dir().join(format!("hil-{name}-{}", std::process::id())))
-    }
-
-    fn path(&self) -> String {
-        self.0.display().to_string()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // Not every test gets as far as making it.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn golden(name: &str) -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .expect("the workspace");
-    root.join("tests/golden/data")
-        .join(name)
-        .display()
-        .to_string()
-}
+use super::bench::{Folder, golden, hil, json, stderr};
 
 #[test]
 fn a_wrong_value_gets_an_error_that_names_the_right_ones() {
@@ -66,14 +26,14 @@ fn a_wrong_value_gets_an_error_that_names_the_right_ones() {
 #[test]
 fn an_image_that_is_none_is_an_error_and_no_flight() {
     let text_file = golden("homing.jsonl");
-    let out = Folder::new("no-image");
+    let folder = Folder::new();
     for (image, reason) in [
         ("no/such/file", "No such file"),
         (text_file.as_str(), "not a readable ELF file"),
         // This very program, an ELF file for another machine.
         (env!("CARGO_BIN_EXE_hil"), "image"),
     ] {
-        let output = hil(&["fly", "--firmware", image, "--out", &out.path()]);
+        let output = hil(&["fly", "--firmware", image, "--out", &folder.file("out")]);
         assert_eq!(output.status.code(), Some(2));
         let stderr = stderr(&output);
         assert!(
@@ -113,8 +73,8 @@ fn a_reader_that_leaves_early_is_no_error() {
 
 #[test]
 fn a_flight_leaves_its_folder_and_ends_with_one_json_object() {
-    let folder = Folder::new("flight");
-    let out = folder.path();
+    let folder = Folder::new();
+    let out = folder.file("out");
     let output = hil(&[
         "fly",
         "--backend",
@@ -126,8 +86,7 @@ fn a_flight_leaves_its_folder_and_ends_with_one_json_object() {
         &out,
     ]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let summary: serde_json::Value =
-        serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let summary = json(&output);
     for field in [
         "home_error_m",
         "bytes_per_m",
@@ -138,26 +97,14 @@ fn a_flight_leaves_its_folder_and_ends_with_one_json_object() {
         assert!(summary[field].is_number(), "{field}");
     }
     assert_eq!(summary["completed"], true);
-    for file in [
-        "summary.json",
-        "recording.json",
-        "flight.log",
-        "report.html",
-        "map.svg",
-    ] {
-        assert!(
-            folder.0.join(file).metadata().expect(file).len() > 100,
-            "{file}"
-        );
-    }
+    folder.assert_holds_a_flight("out");
 }
 
 #[test]
 fn homing_check_counts_and_fails_by_exit_code() {
     let output = hil(&["homing-check", &golden("homing.jsonl"), "--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let report: serde_json::Value =
-        serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let report = json(&output);
     assert_eq!(report["records"], 200);
     assert_eq!(report["failed"], serde_json::json!([]));
     assert!(report["worst_h"].as_f64().is_some_and(|worst| worst < 1e-3));

@@ -1,10 +1,6 @@
 //! Logs of the real thing: what cfclient would have written of a flight of our own comes back as that flight, and what
 //! it never wrote is refused by file, line and column.
 
-mod cfclient;
-
-use std::path::PathBuf;
-use std::process::{Command, Output};
 use std::sync::LazyLock;
 
 use hil::flight::{Flown, fly_native};
@@ -12,6 +8,9 @@ use hil::import_cf::{ImportError, LogFile, import};
 use hil::record::{Phase, PlanarPose, Reference};
 use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing, Storage};
 use proptest::prelude::*;
+
+use super::bench::{Folder, hil, json, stderr};
+use super::cfclient;
 
 /// Round one corner with a snapshot every metre, seed 1.
 static FLOWN: LazyLock<Flown> = LazyLock::new(|| {
@@ -367,73 +366,32 @@ proptest! {
     }
 }
 
-fn hil(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hil"))
-        .args(arguments)
-        .output()
-        .expect("the command starts")
-}
-
-/// A folder for one test, gone after it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("hil-import-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a folder");
-        Self(path)
-    }
-
-    fn write(&self, file: &LogFile) -> String {
-        let path = self.0.join(&file.name);
-        std::fs::write(&path, &file.bytes).expect("a file");
-        path.display().to_string()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // Nothing is lost where it stays.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+fn write(folder: &Folder, file: &LogFile) -> String {
+    folder.with(&file.name, &file.bytes)
 }
 
 #[test]
 fn the_command_leaves_the_folder_of_a_flight_and_one_json_object() {
-    let folder = Folder::new("flight");
-    let files: Vec<String> = LOGS.iter().map(|file| folder.write(file)).collect();
-    let out = folder.0.join("out");
-    let mut arguments = vec![
-        "import-cf",
-        "--json",
-        "--out",
-        out.to_str().expect("a path"),
-    ];
+    let folder = Folder::new();
+    let files: Vec<String> = LOGS.iter().map(|file| write(&folder, file)).collect();
+    let out = folder.file("out");
+    let mut arguments = vec!["import-cf", "--json", "--out", &out];
     arguments.extend(files.iter().map(String::as_str));
     let output = hil(&arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
+    let stderr = stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{stderr}");
-    let summary: serde_json::Value =
-        serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let summary = json(&output);
     assert_eq!(summary["backend"], "cfclient");
     assert!(summary["odometry_only_error_m"].is_null());
-    for file in [
-        "summary.json",
-        "recording.json",
-        "flight.log",
-        "report.html",
-        "map.svg",
-    ] {
-        let length = out.join(file).metadata().expect(file).len();
-        assert!(length > 100, "{file}");
-    }
-    let recording = std::fs::read_to_string(out.join("recording.json")).expect("a recording");
+    folder.assert_holds_a_flight("out");
+    let recording =
+        std::fs::read_to_string(folder.file("out/recording.json")).expect("a recording");
     assert!(recording.contains("\"reference\":\"estimate\""));
 }
 
 #[test]
 fn the_command_refuses_what_is_no_log_by_file_line_and_column() {
-    let folder = Folder::new("refused");
+    let folder = Folder::new();
     for (name, text, message) in [
         (
             "none.csv",
@@ -456,21 +414,19 @@ fn the_command_refuses_what_is_no_log_by_file_line_and_column() {
             "other.csv:1:1: no file has a column `vh.*`",
         ),
     ] {
-        let path = folder.write(&LogFile {
-            name: name.into(),
-            bytes: text.into(),
-        });
-        let output = hil(&[
-            "import-cf",
-            &path,
-            "--out",
-            folder.0.to_str().expect("a path"),
-        ]);
-        let stderr = String::from_utf8_lossy(&output.stderr);
+        let path = write(
+            &folder,
+            &LogFile {
+                name: name.into(),
+                bytes: text.into(),
+            },
+        );
+        let output = hil(&["import-cf", &path, "--out", &folder.file("")]);
+        let stderr = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{stderr}");
         assert!(stderr.contains(message), "{stderr}");
     }
     let output = hil(&["import-cf", "no/such/file.csv"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("no/such/file.csv: No such file"));
+    assert!(stderr(&output).contains("no/such/file.csv: No such file"));
 }

@@ -1,0 +1,74 @@
+//! The command, what it says, and folders for what it reads and leaves.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Files that a flight leaves.
+const FLIGHT_FILES: [&str; 5] = [
+    "summary.json",
+    "recording.json",
+    "flight.log",
+    "report.html",
+    "map.svg",
+];
+
+/// Runs the command to its end.
+pub fn hil(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hil"))
+        .args(arguments)
+        .output()
+        .expect("the command starts")
+}
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// What a command with `--json` ends with.
+pub fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", stderr(output)))
+}
+
+/// The path of a golden file.
+pub fn golden(name: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("the workspace");
+    let path = root.join("tests/golden/data").join(name);
+    path.display().to_string()
+}
+
+/// A folder for one test, gone after it.
+pub struct Folder(TempDir);
+
+impl Folder {
+    pub fn new() -> Self {
+        Self(tempfile::tempdir().expect("a folder for the test"))
+    }
+
+    pub fn path(&self) -> PathBuf {
+        self.0.path().to_path_buf()
+    }
+
+    /// The path of a file in it.
+    pub fn file(&self, name: &str) -> String {
+        self.path().join(name).display().to_string()
+    }
+
+    /// A file in it, written.
+    pub fn with(&self, name: &str, contents: impl AsRef<[u8]>) -> String {
+        std::fs::write(self.path().join(name), contents).expect("a file for the test");
+        self.file(name)
+    }
+
+    /// Whether a flight left all its files in it.
+    pub fn assert_holds_a_flight(&self, folder: &str) {
+        for file in FLIGHT_FILES {
+            let length = self.path().join(folder).join(file).metadata();
+            assert!(length.expect(file).len() > 100, "{file}");
+        }
+    }
+}

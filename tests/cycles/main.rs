@@ -1,0 +1,6 @@
+//! Cycles on the emulated core.
+
+mod flight;
+mod homing;
+mod link;
+mod vision;

@@ -1,0 +1,6 @@
+//! Vectors recorded from other implementations.
+
+mod client;
+mod ekf;
+mod homing;
+mod link;
