@@ -105,6 +105,8 @@ pub enum NoVectorReason {
     /// The views leave a direction undetermined, as between the uniform walls of a corridor, or match
     /// so badly that the linear model means nothing.
     IllConditioned,
+    /// The views differ too much to be of one place.
+    OtherPlace,
 }
 
 /// The homing vector from the current view to a snapshot.

@@ -1,6 +1,7 @@
 //! The way back: popping the stacks, leg by leg.
 
 mod arrival;
+pub(super) mod search;
 
 use nalgebra::Point2;
 
@@ -19,6 +20,12 @@ pub(super) struct Follower {
     /// Stay at the last snapshot instead of consuming the route.
     stays: bool,
     phase: Phase,
+    /// The last snapshot has been searched for.
+    searched: bool,
+    /// Snapshots in a row where the views were of another place.
+    other_places: u8,
+    /// Way by odometry since the last realignment, metres.
+    unseen_m: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -26,15 +33,21 @@ enum Phase {
     /// Before the first step.
     Starting,
     /// By odometry towards the route's tip.
-    Leg,
+    Leg { since_ms: u32 },
     /// At the last snapshot. `done`: it has been reached, and the drone stays.
     Homing { run: HomingRun, done: bool },
+    /// Round the place where the last snapshot is expected.
+    Searching {
+        run: HomingRun,
+        expected: Point2<f32>,
+    },
     /// Waiting for a correction to take effect.
     Settling {
         since_ms: u32,
         correction: Correction,
     },
-    /// Nothing left to do. `told_ms`: when the autopilot was told that the route is finished.
+    /// Nothing left to do. `told_ms`: when the autopilot was told how much of the route is left; none
+    /// where there was no route.
     Holding {
         at: Point2<f32>,
         told_ms: Option<u32>,
@@ -56,6 +69,9 @@ impl Follower {
         Self {
             stays,
             phase: Phase::Starting,
+            searched: false,
+            other_places: 0,
+            unseen_m: 0.0,
         }
     }
 
@@ -82,12 +98,15 @@ impl Follower {
                 told_ms: Some(told_ms),
             } if has_passed(told_ms, context.now_ms, context.parameters.home_period_ms) => {
                 step.map = Some(map_entry(context.route, None));
-                self.hold_at_home(at, context);
+                self.hold(at, context);
             }
-            Phase::Leg | Phase::Homing { .. } | Phase::Holding { .. } => {}
+            Phase::Leg { .. }
+            | Phase::Homing { .. }
+            | Phase::Searching { .. }
+            | Phase::Holding { .. } => {}
         }
-        if matches!(self.phase, Phase::Leg) {
-            self.advance(context, step);
+        if let Phase::Leg { since_ms } = self.phase {
+            self.advance(since_ms, context, step);
         }
         step.vector = Some(self.set_point(context, step));
     }
@@ -112,7 +131,7 @@ impl Follower {
     /// What comes after a snapshot is done with; the drone rests `at`.
     fn go_on(&mut self, at: Point2<f32>, context: &mut Context, step: &mut Step) {
         if self.stays {
-            let run = HomingRun::new(context.now_ms, at, at);
+            let run = HomingRun::new(context.parameters, context.now_ms, at, at);
             self.phase = Phase::Homing { run, done: true };
         } else if context.route.is_empty() {
             self.finish(at, context, step);
@@ -131,7 +150,9 @@ impl Follower {
     }
 
     fn start_leg(&mut self, context: &mut Context, step: &mut Step) {
-        self.phase = Phase::Leg;
+        self.phase = Phase::Leg {
+            since_ms: context.now_ms,
+        };
         let entry = map_entry(context.route, None);
         step.report(Event::LegStarted {
             height: entry.odometry_index,
@@ -140,7 +161,7 @@ impl Follower {
     }
 
     /// Pops the vectors whose ends are reached, until the next end, a snapshot or home.
-    fn advance(&mut self, context: &mut Context, step: &mut Step) {
+    fn advance(&mut self, since_ms: u32, context: &mut Context, step: &mut Step) {
         let reach = context.parameters.acceptance_radius_m;
         let mut popped = false;
         loop {
@@ -151,13 +172,16 @@ impl Follower {
             if context.route.has_snapshot_at_tip() {
                 return self.start_homing(tip, tip, context, step);
             }
-            if context.route.pop_vector().is_none() {
+            let Some(vector) = context.route.pop_vector() else {
                 return self.finish(tip, context, step);
-            }
+            };
+            self.unseen_m += vector.metres().norm();
             popped = true;
         }
         if popped {
             self.start_leg(context, step);
+        } else if has_passed(since_ms, context.now_ms, context.parameters.leg_time_ms) {
+            self.stop(context.route.tip(), context, step);
         }
     }
 
@@ -170,7 +194,9 @@ impl Follower {
         context: &mut Context,
         step: &mut Step,
     ) {
-        let run = HomingRun::new(context.now_ms, target, fallback);
+        let run =
+            HomingRun::new(context.parameters, context.now_ms, target, fallback).reaching_out();
+        self.searched = false;
         self.phase = Phase::Homing { run, done: false };
         let snapshot = context
             .route
@@ -185,10 +211,18 @@ impl Follower {
 
     fn finish(&mut self, at: Point2<f32>, context: &Context, step: &mut Step) {
         step.report(Event::RouteFinished);
-        self.hold_at_home(at, context);
+        self.hold(at, context);
     }
 
-    fn hold_at_home(&mut self, at: Point2<f32>, context: &Context) {
+    /// The safe stop of a drone that is lost: it holds where it was sent last, and the autopilot is told,
+    /// as at home, what is left of the route. The route stays, for another try.
+    fn stop(&mut self, at: Point2<f32>, context: &Context, step: &mut Step) {
+        step.report(Event::Lost);
+        step.map = Some(map_entry(context.route, None));
+        self.hold(at, context);
+    }
+
+    fn hold(&mut self, at: Point2<f32>, context: &Context) {
         let told_ms = Some(context.now_ms);
         self.phase = Phase::Holding { at, told_ms };
     }
@@ -196,12 +230,15 @@ impl Follower {
     fn set_point(&mut self, context: &mut Context, step: &mut Step) -> SetPoint {
         let target = match self.phase {
             Phase::Homing { run, done } => return self.home(run, done, context, step),
+            Phase::Searching { run, expected } => {
+                return self.search(run, expected, context, step);
+            }
             Phase::Settling { correction, .. } => {
                 step.correction = Some(correction);
                 correction.to.position
             }
             Phase::Holding { at, .. } => at,
-            Phase::Leg | Phase::Starting => context.route.tip(),
+            Phase::Leg { .. } | Phase::Starting => context.route.tip(),
         };
         by_odometry(target, context.pose)
     }

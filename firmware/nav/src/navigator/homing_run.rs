@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 
 use super::parameters::{Parameters, has_passed};
 use super::step::{Arrival, Event, SetPoint, Source, Step};
-use crate::homing::{self, HomingVector, NoVectorReason};
+use crate::homing::{self, HomingVector, NoVectorReason, Resemblance};
 use crate::pose::Pose;
 use crate::snapshot::StoredView;
 use crate::spectrum::Spectrum;
@@ -18,6 +18,8 @@ pub(super) struct HomingRun {
     started_ms: u32,
     /// The target while there is no vector.
     fallback: Point2<f32>,
+    /// The farthest of the set-point from there, metres.
+    reach_m: f32,
     /// The low-passed set-point.
     target: Point2<f32>,
     /// The low-passed vector.
@@ -48,11 +50,17 @@ pub(super) struct Ending {
 }
 
 impl HomingRun {
-    /// Homing that begins with the set-point at `target`.
-    pub(super) const fn new(now_ms: u32, target: Point2<f32>, fallback: Point2<f32>) -> Self {
+    /// Homing that begins with the set-point at `target`, and keeps it by `fallback`.
+    pub(super) const fn new(
+        parameters: &Parameters,
+        now_ms: u32,
+        target: Point2<f32>,
+        fallback: Point2<f32>,
+    ) -> Self {
         Self {
             started_ms: now_ms,
             fallback,
+            reach_m: parameters.leash_m,
             target,
             filtered: None,
             vectors: 0,
@@ -61,6 +69,12 @@ impl HomingRun {
             least_difference: f32::INFINITY,
             frames_since_least: 0,
         }
+    }
+
+    /// The same from farther away.
+    pub(super) fn reaching_out(mut self) -> Self {
+        self.reach_m += (self.target - self.fallback).norm();
+        self
     }
 
     /// Takes a view into account and gives the set-point.
@@ -72,15 +86,43 @@ impl HomingRun {
         view: Option<&Spectrum>,
         step: &mut Step,
     ) -> SetPoint {
-        self.missing_views = match view {
+        let vector = view.map(|view| vector(parameters, stored, view));
+        self.take(parameters, pose, vector, step)
+    }
+
+    /// The same on a search: the target without a vector is another in each step, and a vector to
+    /// another place is none.
+    pub(super) fn step_in_search(
+        &mut self,
+        parameters: &Parameters,
+        stored: &StoredView,
+        pose: &Pose,
+        (view, place): (Option<&Spectrum>, Point2<f32>),
+        step: &mut Step,
+    ) -> SetPoint {
+        self.fallback = place;
+        let vector = view.map(|view| {
+            if is_of_another_place(parameters, stored, view) {
+                Err(NoVectorReason::OtherPlace)
+            } else {
+                vector(parameters, stored, view)
+            }
+        });
+        self.take(parameters, pose, vector, step)
+    }
+
+    fn take(
+        &mut self,
+        parameters: &Parameters,
+        pose: &Pose,
+        vector: Option<Result<HomingVector, NoVectorReason>>,
+        step: &mut Step,
+    ) -> SetPoint {
+        self.missing_views = match vector {
             Some(_) => 0,
             None => self.missing_views.saturating_add(1),
         };
-        let homing = &parameters.homing;
-        match view.map(|view| match stored {
-            StoredView::Paper(snapshot) => homing::home(view, snapshot, homing),
-            StoredView::Packed(snapshot) => homing::home_packed(view, snapshot, homing),
-        }) {
+        match vector {
             Some(Ok(vector)) => {
                 self.failure = None;
                 self.follow(parameters, pose, &vector);
@@ -114,6 +156,10 @@ impl HomingRun {
         let offset_m = vector.displacement * parameters.environment_radius_m;
         let goal = pose.position + offset_m.cap_magnitude(parameters.homing_step_m);
         self.target += (goal - self.target) * parameters.smoothing;
+        let strayed = self.target - self.fallback;
+        if strayed.norm() > self.reach_m {
+            self.target = self.fallback + strayed.cap_magnitude(self.reach_m);
+        }
         self.filtered = Some(match self.filtered {
             None => Filtered {
                 offset_m,
@@ -175,4 +221,40 @@ impl HomingRun {
     pub(super) fn target(&self) -> Point2<f32> {
         self.target
     }
+
+    /// Why there is no vector now.
+    pub(super) fn failure(&self) -> Option<NoVectorReason> {
+        self.failure
+    }
+
+    /// The target while there is no vector.
+    pub(super) fn fallback(&self) -> Point2<f32> {
+        self.fallback
+    }
+
+    /// When it began, milliseconds.
+    pub(super) fn started_ms(&self) -> u32 {
+        self.started_ms
+    }
+}
+
+fn vector(
+    parameters: &Parameters,
+    stored: &StoredView,
+    view: &Spectrum,
+) -> Result<HomingVector, NoVectorReason> {
+    match stored {
+        StoredView::Paper(snapshot) => homing::home(view, snapshot, &parameters.homing),
+        StoredView::Packed(snapshot) => homing::home_packed(view, snapshot, &parameters.homing),
+    }
+}
+
+/// Whether a view is of another place than the snapshot; one of which that cannot be told is not.
+pub(super) fn is_of_another_place(
+    parameters: &Parameters,
+    stored: &StoredView,
+    view: &Spectrum,
+) -> bool {
+    Resemblance::of(view, &stored.in_paper_form(), &parameters.homing)
+        .is_ok_and(|seen| seen.difference > parameters.other_place)
 }

@@ -42,6 +42,23 @@ pub struct Parameters {
     /// Homing ends when this many frames in a row brought no new minimum of the difference; zero for
     /// time-outs alone.
     pub frames_without_minimum: u16,
+    /// The farthest that homing may take the set-point from where the snapshot is expected; one that
+    /// begins farther away, that much more.
+    pub leash_m: f32,
+    /// A view of which this share of the power differs from the snapshot's, moved and turned to fit, is
+    /// of another place, 0..=1.
+    pub other_place: f32,
+    /// Between two turns of the search round a snapshot that was not found.
+    pub search_spacing_m: f32,
+    /// Speed of the set-point in that search, metres a second.
+    pub search_speed_m_s: f32,
+    /// So many snapshots in a row whose views were of another place: the drone is lost.
+    pub most_other_places: u8,
+    /// The way by odometry since the last realignment beyond which a snapshot that is not found means
+    /// that the drone is lost.
+    pub farthest_unseen_m: f32,
+    /// Time to the next point of the route; a drone that does not get there is lost.
+    pub leg_time_ms: u32,
     /// After a realignment: rest until the autopilot's filter has taken it over.
     pub settling_time_ms: u32,
     /// Least time between two realignments.
@@ -70,6 +87,18 @@ impl Parameters {
     /// - Early end below 0.06 m: a fifth of the time is saved at no loss. Five vectors: half a second,
     ///   after which the low-pass has forgotten five sixths of its first value.
     /// - The 10-frame rule is off, as in the paper's final flights.
+    /// - Leash 2 m: from farther away the paper's homing does not find home (Fig. 4), and odometry is off by
+    ///   0.3 m after 5 m (its Fig. 5).
+    /// - Another place beyond four fifths of the power: two views that have nothing in common differ by
+    ///   all of it. Where a snapshot is found the rig's rooms, corridors and forest leave 0.11 at most, its
+    ///   rows of plants up to 0.5.
+    /// - Search every 0.4 m, on five legs of an expanding square (IAMSAR Manual, "expanding square
+    ///   search"): up to 0.57 m away, twice the odometry's error after 5 m, and homing sees a snapshot 0.5 m
+    ///   away. At 0.25 m/s it is seen from one place in five frames, and over after 13 s.
+    /// - Two other places in a row: one may have changed since the way out.
+    /// - 20 m without sight: odometry is then off by 1 m (crazyflie-firmware kalman_core with this
+    ///   drone's sensors), as far as a search and homing reach together.
+    /// - 60 s to the next point: the longest stored vector of 18 m at 0.3 m/s.
     /// - The app applies a correction once it arrives and the filter within two periods: 300 ms. Two
     ///   realignments within a second could contradict each other.
     /// - Each MAP goes out once, and a broken one is lost. That the drone is home, the autopilot must
@@ -90,6 +119,13 @@ impl Parameters {
         arrival_radius_m: 0.06,
         least_vectors: 5,
         frames_without_minimum: 0,
+        leash_m: 2.0,
+        other_place: 0.8,
+        search_spacing_m: 0.4,
+        search_speed_m_s: 0.25,
+        most_other_places: 2,
+        farthest_unseen_m: 20.0,
+        leg_time_ms: 60_000,
         settling_time_ms: 300,
         realignment_interval_ms: 1_000,
         home_period_ms: 1_000,

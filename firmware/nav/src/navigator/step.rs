@@ -118,6 +118,11 @@ pub enum Event {
         /// Its index, from zero.
         index: u16,
     },
+    /// The snapshot was not found where it is expected: the search round there has begun.
+    SearchStarted {
+        /// The snapshot's index, from zero.
+        index: u16,
+    },
     /// There is no homing vector; reported when it begins.
     NoVector {
         /// Why.
@@ -142,6 +147,7 @@ pub enum Event {
     /// The autopilot counts from a new origin, and the view is that of the last known place: the
     /// route goes on from there.
     NewOrigin,
-    /// Nobody knows where the drone is on the route: it stays where it is, and nothing is recorded.
+    /// Nobody knows where the drone is on the route: it stays where it is until the next command, and
+    /// nothing is recorded.
     Lost,
 }

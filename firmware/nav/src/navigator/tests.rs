@@ -1,5 +1,7 @@
 extern crate std;
 
+mod lost;
+
 use std::boxed::Box;
 use std::vec::Vec;
 

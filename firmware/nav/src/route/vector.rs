@@ -1,5 +1,7 @@
 //! Odometry in two bytes.
 
+use nalgebra::Vector2;
+
 /// Metres of one count (paper, Fig. 8).
 pub const ODOMETRY_RESOLUTION_M: f32 = 0.1;
 
@@ -19,6 +21,11 @@ pub struct OdometryVector {
 impl OdometryVector {
     /// Bytes of a vector.
     pub const BYTES: usize = 2;
+
+    /// The way, metres: north, west.
+    pub fn metres(self) -> Vector2<f32> {
+        Vector2::new(f32::from(self.x), f32::from(self.y)) * ODOMETRY_RESOLUTION_M
+    }
 
     /// The stored form: north, west.
     pub const fn to_bytes(self) -> [u8; Self::BYTES] {

@@ -3,9 +3,36 @@
 use nalgebra::Point2;
 
 use super::{Context, Follower, Phase, by_odometry};
-use crate::navigator::homing_run::{Ending, HomingRun};
+use crate::homing::NoVectorReason;
+use crate::navigator::homing_run::{Ending, HomingRun, is_of_another_place};
 use crate::navigator::step::{Event, SetPoint, Step};
 use crate::route::Route;
+
+/// What homing has seen in the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sight {
+    /// The snapshot's place.
+    Place,
+    /// Something that does not tell.
+    Unclear,
+    /// Another place.
+    OtherPlace,
+    /// Nothing: a covered camera, or darkness.
+    Nothing,
+}
+
+impl Sight {
+    /// What a run has seen that ends without a vector to be trusted.
+    pub(super) fn without_vector(run: &HomingRun) -> Self {
+        match run.failure() {
+            Some(NoVectorReason::NoView | NoVectorReason::NoContrast) => Self::Nothing,
+            Some(NoVectorReason::OtherPlace) => Self::OtherPlace,
+            Some(NoVectorReason::NotFinite | NoVectorReason::IllConditioned) | None => {
+                Self::Unclear
+            }
+        }
+    }
+}
 
 impl Follower {
     /// One step of homing.
@@ -45,14 +72,40 @@ impl Follower {
         context: &mut Context,
         step: &mut Step,
     ) -> SetPoint {
+        match self.sight(run, context) {
+            Sight::Place => self.realign(run, context, step),
+            sight => {
+                self.miss(run, sight, context, step);
+                set_point
+            }
+        }
+    }
+
+    /// What was seen of the snapshot in the end.
+    fn sight(&self, run: &HomingRun, context: &Context) -> Sight {
+        let elsewhere = || {
+            let top = context.route.top_snapshot();
+            top.zip(context.view)
+                .is_some_and(|(top, view)| is_of_another_place(context.parameters, &top.view, view))
+        };
+        if run.is_trustworthy(context.parameters) {
+            // Who tells the drone to stay says where it is.
+            if !self.stays && elsewhere() {
+                Sight::OtherPlace
+            } else {
+                Sight::Place
+            }
+        } else {
+            Sight::without_vector(run)
+        }
+    }
+
+    /// Goes on from the snapshot with the pose that it was taken at.
+    fn realign(&mut self, run: &HomingRun, context: &mut Context, step: &mut Step) -> SetPoint {
         // Without odometry nobody knows where the snapshot was taken, but the heading is known.
         let position = recorded_position(context.route).unwrap_or(context.pose.position);
         if !self.stays {
             context.route.pop_snapshot();
-        }
-        if !run.is_trustworthy(context.parameters) {
-            self.go_on(run.target(), context, step);
-            return set_point;
         }
         let correction =
             context
@@ -62,6 +115,8 @@ impl Follower {
             index: correction.index,
         });
         step.correction = Some(correction);
+        self.other_places = 0;
+        self.unseen_m = 0.0;
         self.phase = Phase::Settling {
             since_ms: context.now_ms,
             correction,
