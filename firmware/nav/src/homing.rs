@@ -71,6 +71,14 @@ impl HomingParameters {
         turn_bound: 0.5,
         least_variance: 1.0,
     };
+
+    /// The same with a rotation search within `turn` radians, where that is narrower.
+    pub(crate) fn turned_at_most(mut self, turn: f32) -> Self {
+        // Saturates where the turn is unbounded.
+        let steps = libm::floorf(turn / BEARING_STEP_RAD) as u8;
+        self.rotation_bound = self.rotation_bound.min(steps);
+        self
+    }
 }
 
 impl Default for HomingParameters {

@@ -26,6 +26,8 @@ pub(super) struct Follower {
     other_places: u8,
     /// Way by odometry since the last realignment, metres.
     unseen_m: f32,
+    /// Whether the heading was realigned since following began.
+    heading_is_known: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -72,12 +74,14 @@ impl Follower {
             searched: false,
             other_places: 0,
             unseen_m: 0.0,
+            heading_is_known: false,
         }
     }
 
     pub(super) fn resume(&mut self) {
         if !matches!(self.phase, Phase::Holding { .. }) {
             self.phase = Phase::Starting;
+            self.heading_is_known = false;
         }
     }
 
@@ -194,8 +198,9 @@ impl Follower {
         context: &mut Context,
         step: &mut Step,
     ) {
-        let run =
-            HomingRun::new(context.parameters, context.now_ms, target, fallback).reaching_out();
+        let run = HomingRun::new(context.parameters, context.now_ms, target, fallback)
+            .reaching_out()
+            .turned_at_most(self.turn_limit(context.parameters));
         self.searched = false;
         self.phase = Phase::Homing { run, done: false };
         let snapshot = context
@@ -207,6 +212,16 @@ impl Follower {
             index: entry.snapshot_index,
         });
         step.map = Some(entry);
+    }
+
+    /// How far the drone may be turned against its own estimate, radians. Wider, the rotation search finds
+    /// other parts of the room that look alike, and one wrong turn taken for true leads off the route.
+    fn turn_limit(&self, parameters: &Parameters) -> f32 {
+        if self.heading_is_known {
+            parameters.heading_error_rad + parameters.heading_drift_rad_m * self.unseen_m
+        } else {
+            f32::INFINITY
+        }
     }
 
     fn finish(&mut self, at: Point2<f32>, context: &Context, step: &mut Step) {

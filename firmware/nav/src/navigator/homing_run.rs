@@ -20,6 +20,8 @@ pub(super) struct HomingRun {
     fallback: Point2<f32>,
     /// The farthest of the set-point from there, metres.
     reach_m: f32,
+    /// The farthest turn that is believed, radians.
+    turn_limit: f32,
     /// The low-passed set-point.
     target: Point2<f32>,
     /// The low-passed vector.
@@ -61,6 +63,7 @@ impl HomingRun {
             started_ms: now_ms,
             fallback,
             reach_m: parameters.leash_m,
+            turn_limit: f32::INFINITY,
             target,
             filtered: None,
             vectors: 0,
@@ -77,6 +80,12 @@ impl HomingRun {
         self
     }
 
+    /// The same where the heading is known but for `turn_limit` radians.
+    pub(super) const fn turned_at_most(mut self, turn_limit: f32) -> Self {
+        self.turn_limit = turn_limit;
+        self
+    }
+
     /// Takes a view into account and gives the set-point.
     pub(super) fn step(
         &mut self,
@@ -86,7 +95,7 @@ impl HomingRun {
         view: Option<&Spectrum>,
         step: &mut Step,
     ) -> SetPoint {
-        let vector = view.map(|view| vector(parameters, stored, view));
+        let vector = view.map(|view| vector(parameters, self.turn_limit, stored, view));
         self.take(parameters, pose, vector, step)
     }
 
@@ -105,7 +114,7 @@ impl HomingRun {
             if is_of_another_place(parameters, stored, view) {
                 Err(NoVectorReason::OtherPlace)
             } else {
-                vector(parameters, stored, view)
+                vector(parameters, self.turn_limit, stored, view)
             }
         });
         self.take(parameters, pose, vector, step)
@@ -238,15 +247,22 @@ impl HomingRun {
     }
 }
 
+/// The vector, of a turn that is believed.
 fn vector(
     parameters: &Parameters,
+    turn_limit: f32,
     stored: &StoredView,
     view: &Spectrum,
 ) -> Result<HomingVector, NoVectorReason> {
-    match stored {
-        StoredView::Paper(snapshot) => homing::home(view, snapshot, &parameters.homing),
-        StoredView::Packed(snapshot) => homing::home_packed(view, snapshot, &parameters.homing),
+    let homing = parameters.homing.turned_at_most(turn_limit);
+    let vector = match stored {
+        StoredView::Paper(snapshot) => homing::home(view, snapshot, &homing),
+        StoredView::Packed(snapshot) => homing::home_packed(view, snapshot, &homing),
+    }?;
+    if vector.rotation.abs() > turn_limit {
+        return Err(NoVectorReason::IllConditioned);
     }
+    Ok(vector)
 }
 
 /// Whether a view is of another place than the snapshot; one of which that cannot be told is not.

@@ -117,6 +117,7 @@ impl Follower {
         step.correction = Some(correction);
         self.other_places = 0;
         self.unseen_m = 0.0;
+        self.heading_is_known = true;
         self.phase = Phase::Settling {
             since_ms: context.now_ms,
             correction,

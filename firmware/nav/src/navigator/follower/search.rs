@@ -60,13 +60,17 @@ impl Follower {
     fn start_search(&mut self, run: &HomingRun, context: &mut Context, step: &mut Step) {
         let expected = run.fallback();
         self.searched = true;
-        self.phase = Phase::Searching {
-            run: HomingRun::new(context.parameters, context.now_ms, run.target(), expected),
-            expected,
-        };
+        let run = self.anew(run, expected, context);
+        self.phase = Phase::Searching { run, expected };
         step.report(Event::SearchStarted {
             index: map_entry(context.route, None).snapshot_index,
         });
+    }
+
+    /// Homing from where another run was.
+    fn anew(&self, run: &HomingRun, expected: Point2<f32>, context: &Context) -> HomingRun {
+        HomingRun::new(context.parameters, context.now_ms, run.target(), expected)
+            .turned_at_most(self.turn_limit(context.parameters))
     }
 
     /// One step of the search.
@@ -89,7 +93,7 @@ impl Follower {
         let looked = (context.view, expected + offset);
         let set_point = run.step_in_search(parameters, &top.view, context.pose, looked, step);
         self.phase = if run.is_trustworthy(parameters) {
-            let run = HomingRun::new(parameters, context.now_ms, run.target(), expected);
+            let run = self.anew(&run, expected, context);
             Phase::Homing { run, done: false }
         } else {
             Phase::Searching { run, expected }
