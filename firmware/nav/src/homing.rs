@@ -110,8 +110,8 @@ pub enum NoVectorReason {
     NotFinite,
     /// A view has next to no contrast: darkness, glare, uniform walls all round.
     NoContrast,
-    /// The views leave a direction undetermined, as between the uniform walls of a corridor, or match
-    /// so badly that the linear model means nothing.
+    /// The views leave a direction undetermined, as between the uniform walls of a corridor, match so
+    /// badly that the linear model means nothing, or would have the drone turned farther than it can be.
     IllConditioned,
     /// The views differ too much to be of one place.
     OtherPlace,
