@@ -9,6 +9,7 @@ mod mode;
 mod parameters;
 mod realignment;
 mod recorder;
+mod spacing;
 mod step;
 
 use crate::pose::Pose;
@@ -22,6 +23,7 @@ use recorder::Recorder;
 
 pub use mode::{Mode, Recording, UnknownCommand};
 pub use parameters::Parameters;
+pub use spacing::{Drift, catchment, deviations_within};
 pub use step::{Arrival, Correction, EVENTS_PER_STEP, Event, MapEntry, SetPoint, Source, Step};
 
 /// The whole memory and logic of route following.
@@ -115,7 +117,13 @@ impl Navigator {
     pub const fn set_snapshot_spacing(&mut self, metres: f32) {
         if metres > 0.0 && metres.is_finite() {
             self.parameters.snapshot_spacing_m = metres;
+            self.parameters.spacing_by_theory = false;
         }
+    }
+
+    /// Lets snapshots along odometry be as far apart as the drift allows, from now on.
+    pub const fn space_snapshots_by_theory(&mut self) {
+        self.parameters.spacing_by_theory = true;
     }
 
     /// How the snapshots of the next route that is begun are stored.
@@ -153,7 +161,8 @@ impl Navigator {
         match &mut self.activity {
             Activity::Resting => {}
             Activity::Recording(recorder) => {
-                recorder.step(&self.parameters, &mut self.route, pose, view, &mut step);
+                let now = (now_ms, pose);
+                recorder.step(&self.parameters, &mut self.route, now, view, &mut step);
             }
             Activity::Following(follower) => {
                 let mut context = Context {

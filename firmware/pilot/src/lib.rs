@@ -43,6 +43,9 @@ pub type Events = Vec<Event, EVENTS_PER_STEP>;
 /// the only way in which an autopilot recovers that believes in another mode.
 const MODE_PERIOD_STATES: u8 = 10;
 
+/// The argument that asks for snapshots as far apart as the drift of odometry allows, instead of a length.
+pub const SPACING_BY_THEORY: u8 = u8::MAX;
+
 /// Farther from the drone than this, metres, no target of a route can lie: the longest vector that is
 /// stored, and what homing and a correction add.
 pub const REACH_M: f32 = 12.7 * core::f32::consts::SQRT_2 + 1.0;
@@ -205,7 +208,7 @@ impl Pilot {
     /// one changes nothing.
     ///
     /// The published client sends no arguments. Those that follow, in this order, hold from now on; zero,
-    /// or none, leaves what is: the way between two snapshots along odometry, decimetres; the number of
+    /// or none, leaves what is: the way between two snapshots along odometry, decimetres, or [`SPACING_BY_THEORY`]; the number of
     /// the [`SnapshotFormat`] of the next route; how far a stored way may deviate from the one flown,
     /// decimetres.
     fn on_command(&mut self, command: &link::Command, outbox: &mut Outbox) {
@@ -223,7 +226,10 @@ impl Pilot {
     fn take_arguments(&mut self, arguments: &[u8]) {
         let argument = |index: usize| arguments.get(index).copied().unwrap_or(0);
         let metres = |decimetres: u8| f32::from(decimetres) / 10.0;
-        self.navigator.set_snapshot_spacing(metres(argument(0)));
+        match argument(0) {
+            SPACING_BY_THEORY => self.navigator.space_snapshots_by_theory(),
+            decimetres => self.navigator.set_snapshot_spacing(metres(decimetres)),
+        }
         if let Some(format) = SnapshotFormat::from_number(argument(1)) {
             self.navigator.set_snapshot_format(format);
         }

@@ -85,6 +85,14 @@ impl ImageDifference {
         self.constant
     }
 
+    /// The larger eigenvalue of A over x and y: how fast the difference grows along the direction in which
+    /// it grows fastest, luma².
+    pub fn largest_curvature(&self) -> f32 {
+        let Plane { xx, xy, yy } = self.plane;
+        let half = 0.5 * (xx - yy);
+        0.5 * (xx + yy) + libm::sqrtf(half * half + xy * xy)
+    }
+
     /// The minimum (x, y, φ) = -A⁻¹ b: φ is eliminated first, the curvature that is left in the plane is
     /// looked at, and x and y follow by Cramer's rule.
     ///

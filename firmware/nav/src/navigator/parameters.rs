@@ -1,6 +1,8 @@
 //! The navigator's constants.
 
 use crate::homing::HomingParameters;
+#[cfg(doc)]
+use crate::navigator::Drift;
 use crate::route::SIMPLIFY_TOLERANCE_M;
 use crate::snapshot::SnapshotFormat;
 
@@ -8,11 +10,22 @@ use crate::snapshot::SnapshotFormat;
 /// jitter never decides in which period it falls.
 pub(super) const SLACK_MS: u32 = 50;
 
+/// Bounds of the way between two snapshots that theory finds, metres: less than the paper's denser
+/// setting of 1 m is memory without use, and beyond 10 m a single odometry vector does not span it.
+pub(super) const THEORY_M: (f32, f32) = (1.0, 10.0);
+
+/// The speed at which a drone comes back, metres a second: what the published app's flights average.
+pub(super) const RETURN_SPEED_M_S: f32 = 0.5;
+
 /// How the navigator records and follows. Lengths in metres, times in milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
     /// Way between two snapshots along odometry.
     pub snapshot_spacing_m: f32,
+    /// Instead, snapshots along odometry as far apart as the drift lets them be ([`Drift::DEFAULT`]).
+    pub spacing_by_theory: bool,
+    /// With which probability the drone then arrives in the catchment of the next snapshot, 0..1.
+    pub catchment_probability: f32,
     /// Way between two snapshots of a purely visual sequence.
     pub sequence_spacing_m: f32,
     /// How a route that is begun stores its views.
@@ -113,6 +126,8 @@ impl Parameters {
     ///   hear some time: once a second.
     pub const DEFAULT: Self = Self {
         snapshot_spacing_m: 2.0,
+        spacing_by_theory: false,
+        catchment_probability: 0.99,
         sequence_spacing_m: 0.25,
         snapshot_format: SnapshotFormat::Paper,
         simplify_tolerance_m: SIMPLIFY_TOLERANCE_M,

@@ -139,6 +139,44 @@ fn the_spacing_of_snapshots_can_be_changed_to_any_positive_length() {
     assert!((5..=6).contains(&bench.snapshots()));
 }
 
+/// Snapshots along 60 m of waves of one frequency, spaced by theory.
+fn snapshots_by_theory(frequency: usize, probability: f32) -> usize {
+    let mut bench = Bench::new();
+    bench.navigator.parameters.catchment_probability = probability;
+    bench.navigator.space_snapshots_by_theory();
+    bench.command(0x03);
+    let mut coefficients = *dark().coefficients();
+    coefficients[frequency - 1].re = 30.0;
+    let waves = Spectrum::from_coefficients(coefficients);
+    for tenths in 0..=600_u16 {
+        // 0.5 m/s.
+        bench.now_ms += PERIOD_MS;
+        bench.step(f32::from(tenths) * 0.1, 0.0, Some(&waves));
+    }
+    bench.snapshots()
+}
+
+#[test]
+fn by_theory_snapshots_are_denser_where_they_are_seen_from_less_far_and_the_more_shall_be_found() {
+    let [broad, medium, fine] = [2, 4, 6].map(|frequency| snapshots_by_theory(frequency, 0.99));
+    assert!(broad < medium && medium < fine, "{broad}, {medium}, {fine}");
+    assert!(snapshots_by_theory(4, 0.9) < medium && medium < snapshots_by_theory(4, 0.999));
+    // Waves of k = 6: a catchment of 1.5 m x sqrt(2) / 6 = 0.35 m, that is 3.03 deviations of 0.117 m. The drift
+    // reaches that after 1.5 m: 0.06² + 4.2e-4 x 6 s + (0.054 x 1.5)², in metres, is 0.113².
+    assert!((35..=41).contains(&fine), "{fine}");
+    // Between 1 and 10 m, whatever is seen.
+    assert!((59..=61).contains(&snapshots_by_theory(6, 1.0)));
+    assert!((6..=7).contains(&snapshots_by_theory(2, 0.0)));
+}
+
+#[test]
+fn a_length_that_is_asked_for_ends_the_spacing_by_theory() {
+    let mut bench = Bench::new();
+    bench.navigator.space_snapshots_by_theory();
+    bench.navigator.set_snapshot_spacing(2.0);
+    assert_eq!(bench.navigator.parameters(), &Parameters::DEFAULT);
+}
+
 #[test]
 fn odometry_alone_takes_no_snapshot() {
     let mut bench = Bench::new();

@@ -69,11 +69,26 @@ fn the_first_argument_of_a_command_is_the_spacing_of_snapshots_in_decimetres() {
         (&[][..], initial),
         (&[0], initial),
         (&[5], 0.5),
-        (&[255, 7], 25.5),
-        (&[], 25.5),
+        (&[254, 7], 25.4),
+        (&[], 25.4),
     ] {
         assert_eq!(bench.command(ROUTE, args), [mode(ROUTE)]);
         assert_eq!(spacing(&bench), metres, "after the arguments {args:?}");
+    }
+}
+
+#[test]
+fn the_largest_first_argument_asks_for_snapshots_as_far_apart_as_the_drift_allows() {
+    let by_theory = |bench: &Bench| bench.pilot.navigator().parameters().spacing_by_theory;
+    let mut bench = Bench::new();
+    for (args, expected) in [
+        (&[][..], false),
+        (&[255], true),
+        (&[0], true),
+        (&[20], false),
+    ] {
+        assert_eq!(bench.command(ROUTE, args), [mode(ROUTE)]);
+        assert_eq!(by_theory(&bench), expected, "after the arguments {args:?}");
     }
 }
 
