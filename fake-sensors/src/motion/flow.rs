@@ -1,8 +1,10 @@
 //! Optical flow of the ground: the PMW3901 of the flow deck with its driver.
 
+use core::f64::consts::TAU;
+
 use nalgebra::Vector2;
 
-use super::model::{FlowModel, StatedSd};
+use super::model::{FlowModel, ScaleSwing, StatedSd};
 use super::{MotionTruth, stream};
 use crate::random::Normal;
 
@@ -35,6 +37,7 @@ pub struct FlowDeck {
     noise: Normal,
     noise_counts: f64,
     counts_per_rad: f64,
+    swing: Option<Swing>,
     stated_sd: StatedSd,
     /// Cosine and sine of the deck's rotation about the body's z axis.
     mounting: (f64, f64),
@@ -52,6 +55,7 @@ impl FlowDeck {
         let (sin, cos) = libm::sincos(noise.sample() * model.mounting_yaw_sd_rad);
         Self {
             counts_per_rad: COUNTS_PER_RAD * (1.0 + noise.sample() * model.scale_sd),
+            swing: model.scale_swing.map(|swing| Swing::new(&swing, seed)),
             noise,
             noise_counts: model.noise_counts,
             stated_sd: model.stated_sd,
@@ -64,7 +68,8 @@ impl FlowDeck {
 
     /// One millisecond on. Answers at the end of an interval, unless the driver would drop the reading.
     pub fn tick(&mut self, truth: &MotionTruth) -> Option<FlowReading> {
-        self.pending += self.seen(truth) * (self.counts_per_rad * TICK_S);
+        let swing = self.swing.as_mut().map_or(1.0, Swing::tick);
+        self.pending += self.seen(truth) * (self.counts_per_rad * TICK_S * swing);
         self.elapsed_ms += 1;
         if self.elapsed_ms < self.interval_ms {
             return None;
@@ -98,5 +103,28 @@ impl FlowDeck {
         let counts = self.pending.map(libm::trunc);
         self.pending -= counts;
         counts
+    }
+}
+
+/// The factor on the scale that swings about one.
+#[derive(Debug, Clone)]
+struct Swing {
+    amplitude: f64,
+    phase_rad: f64,
+    rad_per_tick: f64,
+}
+
+impl Swing {
+    fn new(swing: &ScaleSwing, seed: u64) -> Self {
+        Self {
+            amplitude: swing.amplitude,
+            phase_rad: TAU * Normal::new(seed, stream::FLOW_SCALE).uniform(),
+            rad_per_tick: TAU * TICK_S / swing.period_s,
+        }
+    }
+
+    fn tick(&mut self) -> f64 {
+        self.phase_rad = libm::remainder(self.phase_rad + self.rad_per_tick, TAU);
+        1.0 + self.amplitude * libm::sin(self.phase_rad)
     }
 }

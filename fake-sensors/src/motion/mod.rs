@@ -15,7 +15,7 @@ mod tests;
 
 pub use flow::{FlowDeck, FlowReading};
 pub use imu::{Imu, ImuReading};
-pub use model::{FlowModel, ImuModel, RangeModel, SensorModel, StatedSd};
+pub use model::{FlowModel, ImuModel, RangeModel, ScaleSwing, SensorModel, StatedSd};
 pub use range::{RangeReading, RangeSensor};
 
 use nalgebra::{UnitQuaternion, Vector3};
@@ -88,5 +88,6 @@ mod stream {
     pub const GYROSCOPE: u64 = u64::from_be_bytes(*b"gyroscop");
     pub const ACCELEROMETER: u64 = u64::from_be_bytes(*b"accelero");
     pub const FLOW: u64 = u64::from_be_bytes(*b"flowdeck");
+    pub const FLOW_SCALE: u64 = u64::from_be_bytes(*b"flowscal");
     pub const RANGE: u64 = u64::from_be_bytes(*b"rangetof");
 }

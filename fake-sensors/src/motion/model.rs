@@ -30,6 +30,7 @@ impl SensorModel {
             flow: FlowModel {
                 noise_counts: 0.0,
                 scale_sd: 0.0,
+                scale_swing: None,
                 mounting_yaw_sd_rad: 0.0,
                 stated_sd: StatedSd::Fixed,
             },
@@ -84,10 +85,23 @@ pub struct FlowModel {
     pub noise_counts: f64,
     /// Standard deviation of the scale error, common to both axes.
     pub scale_sd: f64,
+    /// What the scale does in time besides.
+    pub scale_swing: Option<ScaleSwing>,
     /// Standard deviation of the deck's rotation about the body's z axis, rad.
     pub mounting_yaw_sd_rad: f64,
     /// What the driver tells the filter about the noise.
     pub stated_sd: StatedSd,
+}
+
+/// A scale error that goes up and down as a sine: the ground below is not as far away or as well lit all along a way.
+///
+/// A constant scale error cancels on a way out and back; this one does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScaleSwing {
+    /// Its largest value, as a share of the scale.
+    pub amplitude: f64,
+    /// From one largest value to the next, s. Where in it a flight begins, the seed draws.
+    pub period_s: f64,
 }
 
 /// How the flow deck's driver comes by the standard deviation it states (`flowdeck_v1v2`).
@@ -119,6 +133,7 @@ impl Default for FlowModel {
             noise_counts: 2.0,
             // Assumed. The firmware itself once changed its constant by 19 % (commit 72b8f8e2).
             scale_sd: 0.05,
+            scale_swing: None,
             // Assumed: one degree.
             mounting_yaw_sd_rad: 1.0 * core::f64::consts::PI / 180.0,
             stated_sd: StatedSd::Fixed,

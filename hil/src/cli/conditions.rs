@@ -4,10 +4,11 @@ use std::path::Path;
 
 use autopilot::app::Quirks;
 use clap::{Args, ValueEnum};
+use fake_sensors::motion::ScaleSwing;
 
 use crate::scenario::{
-    CameraTrouble, Conditions, Correction, LIGHTS, LensPage, Quirk, STRONGEST_WIND_M_S, Wind,
-    WireFault,
+    CameraTrouble, Conditions, Correction, LARGEST_SWING, LIGHTS, LensPage, Quirk,
+    STRONGEST_WIND_M_S, SWING_PERIODS_S, Wind, WireFault, flow_scale,
 };
 
 /// What the flight is up against.
@@ -36,6 +37,12 @@ pub struct ConditionArguments {
     /// All lamps' strength over that of the world's own, from 0.001 to 1000: the firmware's first exposure suits 1
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = parse_light, hide_default_value = true)]
     light: f32,
+    /// The flow sensor's scale swings in time by this share, with this period
+    #[arg(long, value_name = "AMPLITUDE,SECONDS", value_parser = parse_flow_scale)]
+    flow_scale: Option<ScaleSwing>,
+    /// On the way out a pilot who sees the drone leads it; else it flies the route as its odometry has it
+    #[arg(long)]
+    pilot: bool,
     /// Something wrong with the camera's wires, from a second of the flight on; after a comma, for how many seconds
     /// [default: 0.5]; the emulated board has wires. NAME: lost-vsync, stuck-vsync, lost-hsync, short-line, extra-bytes,
     /// stopped-clock or unplugged
@@ -64,6 +71,8 @@ impl ConditionArguments {
             correction: self.correction,
             wind: self.wind,
             light: self.light,
+            flow_scale: self.flow_scale,
+            piloted: self.pilot,
             camera: self.camera_fault,
             lens: self.lens,
         }
@@ -124,6 +133,17 @@ fn parse_trouble(text: &str) -> Result<CameraTrouble, String> {
 
 fn parse_lens(text: &str) -> Result<LensPage, String> {
     LensPage::from_file(Path::new(text)).map_err(|error| error.to_string())
+}
+
+fn parse_flow_scale(text: &str) -> Result<ScaleSwing, String> {
+    let number = |text: &str| text.parse::<f64>().ok();
+    let swing = text
+        .split_once(',')
+        .and_then(|(amplitude, period)| flow_scale(number(amplitude)?, number(period)?));
+    swing.ok_or_else(|| {
+        let (least, most) = (SWING_PERIODS_S.start(), SWING_PERIODS_S.end());
+        format!("an amplitude from 0 to {LARGEST_SWING} and, after a comma, a period from {least} to {most} s: 0.03,60")
+    })
 }
 
 fn parse_wind(text: &str) -> Result<Wind, String> {

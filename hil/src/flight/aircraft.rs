@@ -6,10 +6,10 @@ use core::f64::consts::TAU;
 use autopilot::app::{self, Dropped, Script, Settings, Step, Until};
 use autopilot::vehicle::{PAPER_MASS_KG, Truth, Vehicle, VehicleParameters};
 use fake_sensors::camera;
-use fake_sensors::motion::{MotionSensors, SensorModel};
+use fake_sensors::motion::{FlowModel, MotionSensors, SensorModel};
 use fake_sensors::random::Normal;
 use fake_sensors::wind::{Wind, WindModel};
-use link::{Message, Mode, WorldPoint};
+use link::{Message, Mode, WorldPoint, WorldPose};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::autopilot::Autopilot;
@@ -46,6 +46,7 @@ pub struct Aircraft {
     vehicle: Vehicle,
     sensors: MotionSensors,
     wind: Option<Wind>,
+    is_piloted: bool,
     autopilot: Autopilot,
     settings: Settings,
     /// What the operator starts: from the ground the whole script, later on the way back.
@@ -81,8 +82,9 @@ impl Aircraft {
                 Vector3::zeros(),
                 0.0,
             ),
-            sensors: MotionSensors::new(&SensorModel::default(), scenario.seed),
+            sensors: MotionSensors::new(&sensor_model(&scenario.conditions), scenario.seed),
             wind: wind(scenario),
+            is_piloted: scenario.conditions.piloted,
             autopilot: Autopilot::new(script.clone(), settings, 0),
             settings,
             script,
@@ -104,6 +106,14 @@ impl Aircraft {
             self.restart(now_ms);
         }
         let readings = self.sensors.tick(&motion_truth(self.vehicle.truth()));
+        if self.is_piloted {
+            let seen = self.true_pose();
+            self.autopilot.app().set_seen(WorldPose {
+                x: seen.x as f32,
+                y: seen.y as f32,
+                yaw: seen.yaw as f32,
+            });
+        }
         let transmit = if now_ms >= self.runs_since_ms {
             self.autopilot.tick(now_ms, &readings, received)
         } else {
@@ -270,7 +280,10 @@ fn settings(conditions: &Conditions, route: &app::Route) -> Settings {
     Settings {
         quirks: conditions.quirks,
         correction: conditions.correction.sd(),
-        max_distance_m: if reach_m < usual.max_distance_m {
+        max_distance_m: if conditions.piloted {
+            // The pilot sees where it is; what the filter believes may turn round by a half and more.
+            usual.max_distance_m + route.length_m() + FENCE_MARGIN_M
+        } else if reach_m < usual.max_distance_m {
             usual.max_distance_m
         } else {
             reach_m + FENCE_MARGIN_M
@@ -278,6 +291,17 @@ fn settings(conditions: &Conditions, route: &app::Route) -> Settings {
         follow_limit_ms: usual.follow_limit_ms.max(following_ms),
         flight_limit_ms: usual.flight_limit_ms.max(2 * following_ms),
         ..usual
+    }
+}
+
+/// The motion sensors under these conditions.
+fn sensor_model(conditions: &Conditions) -> SensorModel {
+    SensorModel {
+        flow: FlowModel {
+            scale_swing: conditions.flow_scale,
+            ..FlowModel::default()
+        },
+        ..SensorModel::default()
     }
 }
 

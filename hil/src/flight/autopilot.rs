@@ -28,7 +28,12 @@ pub struct Autopilot {
 impl Autopilot {
     /// One that starts at `now_ms`, and will fly `script`.
     pub fn new(script: Script, settings: Settings, now_ms: u64) -> Self {
-        let filter = ekf::Parameters::default();
+        let usual = ekf::Parameters::default();
+        let filter = ekf::Parameters {
+            // Within the fence of a long route the filter does not start afresh.
+            max_position_m: usual.max_position_m.max(settings.max_distance_m),
+            ..usual
+        };
         Self {
             stabiliser: Stabiliser::new(filter, &ControllerParameters::default(), now_ms),
             app: FlightApp::new(script, settings),

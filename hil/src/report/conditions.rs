@@ -34,6 +34,16 @@ pub fn in_words(conditions: &Conditions) -> Option<String> {
         let factor = number::trimmed(conditions.light.into(), 3);
         words.push(format!("light {factor} times the world's own"));
     }
+    if let Some(swing) = conditions.flow_scale {
+        words.push(format!(
+            "scale of the flow sensor swings by {} % in {} s",
+            number::trimmed(100.0 * swing.amplitude, 1),
+            number::trimmed(swing.period_s, 1)
+        ));
+    }
+    if conditions.piloted {
+        words.push("led by a pilot on the way out".into());
+    }
     if let Some(trouble) = conditions.camera {
         words.push(format!(
             "camera {} at {} s for {} s",
@@ -63,7 +73,7 @@ fn quirks(conditions: &Conditions) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{CameraTrouble, LensPage, Wind, WireFault};
+    use crate::scenario::{CameraTrouble, LensPage, Wind, WireFault, flow_scale};
 
     #[test]
     fn an_undisturbed_flight_has_no_conditions() {
@@ -81,6 +91,8 @@ mod tests {
                 turbulence: 0.2,
             }),
             light: 0.05,
+            flow_scale: flow_scale(0.03, 60.0),
+            piloted: true,
             camera: Some(CameraTrouble {
                 fault: WireFault::StuckVsync,
                 from_ms: 12_500,
@@ -96,6 +108,8 @@ mod tests {
             "soft corrections",
             "wind 1.5 m/s, turbulence 20 %",
             "light 0.05 times the world's own",
+            "scale of the flow sensor swings by 3 % in 60 s",
+            "led by a pilot on the way out",
             "a lens record in the flash",
             "camera stuck-vsync at 12.5 s for 0.5 s",
         ] {

@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use autopilot::app::{CorrectionSd, Quirks};
 use clap::ValueEnum;
+use fake_sensors::motion::ScaleSwing;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::{CameraTrouble, LensPage};
@@ -13,6 +14,11 @@ pub const STRONGEST_WIND_M_S: f64 = 32.0;
 /// The lamps' strengths that a flight may have, over that of the world's own: the range that the sensor's
 /// exposure spans about the first one.
 pub const LIGHTS: RangeInclusive<f32> = 0.001..=1_000.0;
+
+/// Largest share of the flow sensor's scale by which it may swing in time.
+pub const LARGEST_SWING: f64 = 0.5;
+/// Periods of that swing, s: from what a drone flies by in a moment to a long flight.
+pub const SWING_PERIODS_S: RangeInclusive<f64> = 1.0..=10_000.0;
 
 /// Nothing out of the ordinary, by default.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -30,6 +36,13 @@ pub struct Conditions {
     pub wind: Option<Wind>,
     /// All lamps' strength over that of the world's own, which the firmware's first exposure suits.
     pub light: f32,
+    /// What the flow sensor's scale does in time, besides the constant error that each seed draws.
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "swing")]
+    pub flow_scale: Option<ScaleSwing>,
+    /// Whether a pilot who sees the drone leads it on the way out; else it flies the route as its odometry has it, and
+    /// after a hundred metres far beside the places that the route names.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub piloted: bool,
     /// Something wrong with the camera's wires for a while; an emulated board has wires.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraTrouble>,
@@ -47,6 +60,8 @@ impl Default for Conditions {
             correction: Correction::default(),
             wind: None,
             light: 1.0,
+            flow_scale: None,
+            piloted: false,
             camera: None,
             lens: None,
         }
@@ -94,6 +109,15 @@ impl Wind {
     }
 }
 
+/// `None` unless the amplitude is from 0 to [`LARGEST_SWING`] and the period within [`SWING_PERIODS_S`].
+pub fn flow_scale(amplitude: f64, period_s: f64) -> Option<ScaleSwing> {
+    let swings = (0.0..=LARGEST_SWING).contains(&amplitude);
+    (swings && SWING_PERIODS_S.contains(&period_s)).then_some(ScaleSwing {
+        amplitude,
+        period_s,
+    })
+}
+
 /// A peculiarity of the published flight app on the link, by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -130,6 +154,11 @@ impl Quirk {
             Self::UncheckedValues => &mut quirks.unchecked_values,
         }
     }
+}
+
+fn swing<S: Serializer>(swing: &Option<ScaleSwing>, serializer: S) -> Result<S::Ok, S::Error> {
+    let parts = swing.map(|swing| [("amplitude", swing.amplitude), ("period_s", swing.period_s)]);
+    serializer.collect_map(parts.into_iter().flatten())
 }
 
 /// The peculiarities that are switched on, by their names on the command line.

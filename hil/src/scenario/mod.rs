@@ -12,7 +12,10 @@ use autopilot::app::{self, Experiment, Script};
 use clap::ValueEnum;
 use link::{Record, WorldPoint};
 
-pub use conditions::{Conditions, Correction, LIGHTS, Quirk, STRONGEST_WIND_M_S, Wind};
+pub use conditions::{
+    Conditions, Correction, LARGEST_SWING, LIGHTS, Quirk, STRONGEST_WIND_M_S, SWING_PERIODS_S,
+    Wind, flow_scale,
+};
 pub use lens::{LensFileError, LensPage};
 pub use meander::{Meander, NoWay};
 pub use storage::{Deviation, SnapshotForm, Storage};

@@ -4,17 +4,19 @@ use std::fs;
 use std::path::Path;
 use std::sync::OnceLock;
 
+use fake_sensors::world::World;
 use hil::experiments::{self, COMPUTED};
 use hil::flight::FlightError;
 use hil::parallel;
 use hil::scenario::file::{Backend, ScenarioFile};
 use hil::sweep::{FlightFigures, Outcome, Vessel, fly_each};
+use nalgebra::Vector2;
 use serde_json::Value;
 
 use super::bench::{Folder, hil, json, stderr};
 
 /// Scenarios whose flights take many seconds, some of them minutes: flown by `hil experiments` alone.
-const LONG: [&str; 13] = [
+const LONG: [&str; 14] = [
     "corridor-120m",
     "corridor-odometry",
     "corridor-snapshot",
@@ -25,6 +27,7 @@ const LONG: [&str; 13] = [
     "s-one-metre",
     "s-soft",
     "u-lean-photograph",
+    "u-lean-swing",
     "u-odometry",
     "u-office",
     "u-wind",
@@ -44,8 +47,12 @@ reason = "it is short"
 "#;
 
 fn library() -> Vec<ScenarioFile> {
+    files_in("../tests/scenarios")
+}
+
+fn files_in(folder: &str) -> Vec<ScenarioFile> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    ScenarioFile::open_all(&root.join("../tests/scenarios")).expect("the library is sound")
+    ScenarioFile::open_all(&root.join(folder)).expect("the library is sound")
 }
 
 fn image() -> &'static [u8] {
@@ -86,6 +93,43 @@ fn every_short_scenario_of_the_library_keeps_what_it_expects() {
 }
 
 #[test]
+fn every_way_of_a_kilometre_is_as_long_and_clear_of_what_stands_there() {
+    // Beside the way, metres: what a drone that follows by odometry and sight may stray, and its rotors.
+    const ASIDE_M: [f32; 3] = [-0.6, 0.0, 0.6];
+    const HEIGHTS_M: [f32; 3] = [0.3, 0.55, 0.8];
+    let files = files_in("../tests/scenarios/kilometre");
+    assert_eq!(files.len(), 3);
+    for file in files {
+        let scenario = file.scenario(file.seeds.first).expect("a flight");
+        let world = World::open(&scenario.world, scenario.seed).expect("a world");
+        let route = scenario.route.waypoints();
+        let length_m = route.length_m();
+        assert!(
+            (1_000.0..1_025.0).contains(&length_m),
+            "{}: {length_m} m",
+            file.name
+        );
+        for leg in route.waypoints.windows(2) {
+            let [from, to] =
+                [leg[0].place, leg[1].place].map(|place| Vector2::new(place.x, place.y));
+            let along = (to - from).normalize();
+            let across = Vector2::new(-along.y, along.x);
+            for (aside_m, height_m) in ASIDE_M
+                .iter()
+                .flat_map(|aside| HEIGHTS_M.map(|height| (aside, height)))
+            {
+                let at = |place: Vector2<f32>| (place + *aside_m * across).push(height_m);
+                assert!(
+                    world.clear_between(at(from), at(to)),
+                    "{}: {from} to {to}, {aside_m} m aside, at {height_m} m",
+                    file.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn every_claim_of_the_paper_has_a_row() {
     let files = library();
     let claimed = files.iter().flat_map(|file| &file.expectations);
@@ -107,7 +151,7 @@ fn every_claim_of_the_paper_has_a_row() {
 fn a_flight_that_fails_is_named_with_both_figures_and_replayed_to_the_byte() {
     let folder = Folder::new();
     let hopeless = CORNER.replace("at_most = 0.5", "at_most = 0.01");
-    let file = folder.with("hopeless.toml", &hopeless.replace("count = 3", "count = 1"));
+    let file = folder.with("hopeless.toml", hopeless.replace("count = 3", "count = 1"));
     let output = hil(&["sweep", &file, "--json", "--out", &folder.file("out")]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let found = &json(&output)["expectations"][0];
@@ -197,7 +241,7 @@ fn a_sweep_names_its_figures_as_scripts_expect() {
 #[test]
 fn a_wrong_file_gets_its_line_and_a_reason() {
     let folder = Folder::new();
-    let file = folder.with("wrong.toml", &CORNER.replace("count = 3", "count = 0"));
+    let file = folder.with("wrong.toml", CORNER.replace("count = 3", "count = 0"));
     for verb in ["fly", "sweep"] {
         let output = hil(&[verb, &file]);
         assert_eq!(output.status.code(), Some(2));

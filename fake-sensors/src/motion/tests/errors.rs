@@ -6,7 +6,8 @@ use nalgebra::Vector3;
 
 use super::{hover, total_counts};
 use crate::motion::{
-    FlowModel, Imu, ImuModel, MotionReadings, MotionSensors, MotionTruth, RangeModel, SensorModel,
+    FlowModel, Imu, ImuModel, MotionReadings, MotionSensors, MotionTruth, RangeModel, ScaleSwing,
+    SensorModel,
 };
 
 const IDEAL: SensorModel = SensorModel::ideal();
@@ -144,6 +145,30 @@ fn flow_is_off_by_its_scale_along_and_by_its_mounting_across() {
     });
     let off = spread(&turned, &forward, |r| f64::from(total_counts(r)[1]) / 486.0);
     assert_size(off, 1_f64.to_radians());
+}
+
+#[test]
+fn flows_scale_swings_by_its_amplitude_and_is_right_over_a_whole_period() {
+    let forward = MotionTruth {
+        velocity_m_s: Vector3::new(0.5, 0.0, 0.0),
+        ..hover()
+    };
+    let swinging = with_flow(FlowModel {
+        scale_swing: Some(ScaleSwing {
+            amplitude: 0.1,
+            period_s: 10.0,
+        }),
+        ..IDEAL.flow
+    });
+    let off = spread(&swinging, &forward, |r| {
+        f64::from(total_counts(r)[0]) / 486.0 - 1.0
+    });
+    // Root mean square of a sine, of which a second is a tenth.
+    assert_size(off, 0.1 * 0.5_f64.sqrt());
+    let period = super::run(&swinging, 1, &forward, 10_000);
+    let counts = f64::from(total_counts(&period)[0]);
+    // Ten radians at 488.3 counts each.
+    assert!((counts / 4_883.0 - 1.0).abs() < 0.005, "{counts}");
 }
 
 #[test]

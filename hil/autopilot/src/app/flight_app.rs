@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use super::camera::{Camera, Counters, News, Received};
 use super::mission::{Decision, Mission, View};
 use super::phase::{Outcome, Phase};
+use super::pilot::Pilot;
 use super::reception::Dropped;
 use super::safety;
 use super::script::Script;
@@ -68,6 +69,8 @@ pub struct FlightApp {
     next_target: Option<WorldPoint>,
     /// What the operator has asked for from outside the script.
     ordered: Option<Outcome>,
+    /// Where a pilot sees the drone, if there is one.
+    seen: Option<WorldPose>,
 }
 
 impl FlightApp {
@@ -85,6 +88,7 @@ impl FlightApp {
             yaw_rad: 0.0,
             next_target: None,
             ordered: None,
+            seen: None,
         }
     }
 
@@ -138,6 +142,12 @@ impl FlightApp {
     /// One of the operator's buttons for the camera: any [`Mode`]. Obeyed in [`super::Step::Buttons`].
     pub fn press(&mut self, button: Mode) {
         self.mission.press(button);
+    }
+
+    /// A pilot sees the drone there, relative to its take-off, and leads it along the script's legs on the ground
+    /// from now on, where they would else be legs of the filter's drifting coordinates.
+    pub fn set_seen(&mut self, seen: WorldPose) {
+        self.seen = Some(seen);
     }
 
     /// The switches and the drone's health from now on. The app starts with [`Signals::default`].
@@ -311,6 +321,10 @@ impl FlightApp {
                 x: self.position_m.x,
                 y: self.position_m.y,
             },
+            pilot: self.seen.map(|seen| Pilot {
+                seen,
+                believed: pose(estimate),
+            }),
         };
         self.mission.cycle(&view, &mut self.camera)
     }

@@ -4,6 +4,7 @@ use link::{Implausible, Mode, WorldPoint};
 
 use super::camera::Camera;
 use super::phase::{Outcome, Phase};
+use super::pilot::Pilot;
 use super::route::{Arrival, distance_m};
 use super::script::{FIRST_SNAPSHOT, Script, Step, Until};
 use super::settings::{CYCLE_MS, Settings};
@@ -23,6 +24,8 @@ pub struct View {
     pub height_m: f32,
     /// Where it has been sent.
     pub set_point: WorldPoint,
+    /// Who leads it on scripted legs; without one they are legs of the filter's coordinates.
+    pub pilot: Option<Pilot>,
 }
 
 /// What a cycle decided.
@@ -59,6 +62,8 @@ struct Progress {
     began_ms: Option<u64>,
     /// Since when its end has been reached.
     reached_ms: Option<u64>,
+    /// Where on the ground the pilot has led the drone.
+    led_to: Option<WorldPoint>,
     /// Whether the camera has given a target during the step.
     led: bool,
     /// Whether the camera has turned to the first snapshot of the route during the step.
@@ -162,15 +167,27 @@ impl Mission {
     }
 
     fn fly_to(&mut self, place: WorldPoint, arrival: Arrival, view: &View) -> (Decision, bool) {
-        let set_point = match self.settings.cruise_speed_m_s {
-            Some(speed) => towards(view.set_point, place, speed * CYCLE_S),
+        let (from, here) = match view.pilot {
+            None => (view.set_point, view.position),
+            Some(pilot) => {
+                let led_to = self.progress.led_to;
+                let from = led_to.unwrap_or_else(|| pilot.on_the_ground(view.set_point));
+                (from, pilot.on_the_ground(view.position))
+            }
+        };
+        let led_to = match self.settings.cruise_speed_m_s {
+            Some(speed) => towards(from, place, speed * CYCLE_S),
             None => place,
         };
+        self.progress.led_to = Some(led_to);
         // Once reached, the dwell runs on even if the drone swings out of the radius.
-        let there = set_point == place && distance_m(view.position, place) <= arrival.radius_m;
+        let there = led_to == place && distance_m(here, place) <= arrival.radius_m;
         let reached = there || self.progress.reached_ms.is_some();
         let stayed_ms = self.progress.stayed_ms(view.now_ms, reached);
         let done = stayed_ms >= Some(arrival.dwell_ms);
+        let set_point = view
+            .pilot
+            .map_or(led_to, |pilot| pilot.in_the_filter(led_to));
         (Decision::GoTo(set_point), done)
     }
 

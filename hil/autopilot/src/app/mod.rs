@@ -31,6 +31,7 @@ mod goal;
 mod handshake;
 mod mission;
 mod phase;
+mod pilot;
 mod quirks;
 mod reception;
 mod route;

@@ -24,6 +24,8 @@ pub struct Parameters {
     pub flow: FlowParameters,
     /// Geometry of the range sensor.
     pub range: RangeParameters,
+    /// A position estimated farther away than this on any axis resets the filter, m (`maxPos` of `kalman_supervisor`).
+    pub max_position_m: f32,
 }
 
 impl Default for Parameters {
@@ -35,6 +37,7 @@ impl Default for Parameters {
             ground_attitude_reversion: 0.001,
             flow: FlowParameters::default(),
             range: RangeParameters::default(),
+            max_position_m: 100.0,
         }
     }
 }

@@ -61,12 +61,11 @@ impl State {
         self.rotation.row(2).transpose()
     }
 
-    /// Whether position (100 m) or body velocity (10 m/s) has left the bounds of the firmware's supervisor
+    /// Whether position or body velocity (10 m/s) has left the bounds of the firmware's supervisor
     /// (`kalman_supervisor`), the only outlier defence in the filter.
-    pub fn out_of_bounds(&self) -> bool {
-        const MAX_POSITION_M: f32 = 100.0;
+    pub fn out_of_bounds(&self, max_position_m: f32) -> bool {
         const MAX_VELOCITY_M_S: f32 = 10.0;
-        self.position.amax() > MAX_POSITION_M || self.velocity.amax() > MAX_VELOCITY_M_S
+        self.position.amax() > max_position_m || self.velocity.amax() > MAX_VELOCITY_M_S
     }
 }
 

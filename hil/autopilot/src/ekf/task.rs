@@ -106,7 +106,7 @@ impl Ekf {
         if predicted || corrected {
             self.state.finalise();
         }
-        self.reset_requested |= self.state.out_of_bounds();
+        self.reset_requested |= self.state.out_of_bounds(self.parameters.max_position_m);
     }
 
     fn reset(&mut self, now_ms: u64) {

@@ -11,8 +11,9 @@ use toml::Spanned;
 use super::{Backend, ScenarioFile, Seeds, Way};
 use crate::scenario::expectation::{Bounds, Expectation, Metric};
 use crate::scenario::{
-    CameraTrouble, Conditions, Correction, Deviation, Homing, LIGHTS, Meander, Polyline, Quirk,
-    Route, STRONGEST_WIND_M_S, SnapshotForm, Spacing, Storage, Wind, WireFault,
+    CameraTrouble, Conditions, Correction, Deviation, Homing, LARGEST_SWING, LIGHTS, Meander,
+    Polyline, Quirk, Route, STRONGEST_WIND_M_S, SWING_PERIODS_S, SnapshotForm, Spacing, Storage,
+    Wind, WireFault, flow_scale,
 };
 use crate::toml_file::Mistake;
 
@@ -106,6 +107,9 @@ struct ConditionsTable {
     correction: Correction,
     wind: Option<Spanned<WindTable>>,
     light: Option<Spanned<f32>>,
+    flow_scale: Option<Spanned<SwingTable>>,
+    #[serde(default)]
+    pilot: bool,
     camera_fault: Option<Spanned<FaultTable>>,
 }
 
@@ -115,6 +119,13 @@ struct WindTable {
     mean: f64,
     #[serde(default)]
     turbulence: f64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SwingTable {
+    amplitude: f64,
+    period: f64,
 }
 
 #[derive(Debug, Deserialize)]
@@ -303,6 +314,7 @@ impl ConditionsTable {
     fn check(self, backend: Backend) -> Result<Conditions, Mistake> {
         let mut conditions = Conditions {
             correction: self.correction,
+            piloted: self.pilot,
             ..Conditions::default()
         };
         if let Some(names) = self.quirks {
@@ -328,6 +340,17 @@ impl ConditionsTable {
                 (wind.span(), reason)
             })?;
             conditions.wind = Some(blows);
+        }
+        if let Some(swing) = self.flow_scale {
+            let SwingTable { amplitude, period } = swing.get_ref();
+            let swings = flow_scale(*amplitude, *period).ok_or_else(|| {
+                let (least, most) = (SWING_PERIODS_S.start(), SWING_PERIODS_S.end());
+                let reason = format!(
+                    "an amplitude from 0 to {LARGEST_SWING} and a period from {least} to {most} s"
+                );
+                (swing.span(), reason)
+            })?;
+            conditions.flow_scale = Some(swings);
         }
         if let Some(fault) = self.camera_fault {
             conditions.camera = Some(check_fault(fault, backend)?);

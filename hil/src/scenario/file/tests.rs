@@ -15,6 +15,8 @@ deviation = 0.3
 [conditions]
 wind = { mean = 1.5, turbulence = 0.2 }
 quirks = ["self-acknowledge"]
+flow_scale = { amplitude = 0.03, period = 60 }
+pilot = true
 
 [[expect]]
 metric = "home_error_m.p95"
@@ -58,6 +60,9 @@ fn a_file_says_what_is_flown() {
     let wind = scenario.conditions.wind.expect("wind");
     assert_eq!((wind.mean_m_s, wind.turbulence), (1.5, 0.2));
     assert!(scenario.conditions.quirks.self_acknowledge);
+    let swing = scenario.conditions.flow_scale.expect("a swing");
+    assert_eq!((swing.amplitude, swing.period_s), (0.03, 60.0));
+    assert!(scenario.conditions.piloted);
     assert!(!scenario.conditions.quirks.short_buffer);
     assert_eq!(file.expectations[0].bounds.at_most, Some(0.5));
 }
@@ -98,21 +103,33 @@ fn what_cannot_be_flown_is_refused_with_its_line_and_a_reason() {
             "unknown variant `none`",
         ),
         (
+            "amplitude = 0.03",
+            "amplitude = 0.6",
+            15,
+            "an amplitude from 0 to 0.5",
+        ),
+        (
+            "period = 60",
+            "period = 0",
+            15,
+            "a period from 1 to 10000 s",
+        ),
+        (
             "home_error_m.p95",
             "home_error",
-            17,
+            19,
             "unknown variant `home_error`",
         ),
-        ("at_most = 0.5", "", 16, "`at_least` or `at_most`"),
+        ("at_most = 0.5", "", 18, "`at_least` or `at_most`"),
         (
             "at_most = 0.5",
             "at_most = 0.5\nat_least = 0.6",
-            16,
+            18,
             "beyond",
         ),
-        ("at_most = 0.5", "at_most = nan", 16, "no number"),
-        ("claim = 31", "claim = 99", 16, "1 to 36"),
-        ("reason = \"it is short\"", "", 16, "missing field `reason`"),
+        ("at_most = 0.5", "at_most = nan", 18, "no number"),
+        ("claim = 31", "claim = 99", 18, "1 to 36"),
+        ("reason = \"it is short\"", "", 18, "missing field `reason`"),
         ("spacing = 1.0", "spacing =", 8, ""),
     ] {
         let (line, said) = refused(line, by);

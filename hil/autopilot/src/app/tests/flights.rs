@@ -1,7 +1,7 @@
 //! Whole flights: how they go and how they end.
 
 use link::{InsCorrection, Map, Message, Record, Source, Vector, WorldPoint, WorldPose};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Rotation2, Vector2, Vector3};
 
 use super::{Bench, FIRST_CYCLE_MS, FOLLOW, command, estimate, vector};
 use crate::app::{Arrival, Outcome, Phase, Route, Script, Settings, Step};
@@ -64,6 +64,45 @@ fn the_set_point_travels_at_cruise_speed_or_jumps() {
     assert!((travelled.norm() - 0.5).abs() < 1e-5, "{travelled}");
     let jumped = set_point_after_a_second(None);
     assert_eq!(jumped, Vector2::new(3.0, 4.0));
+}
+
+/// What a leg of 7 m becomes on the ground whose filter turns away by a degree a second.
+fn flown_with_a_turning_filter(is_piloted: bool) -> Vec<Vector2<f32>> {
+    let fly_to = Step::FlyTo {
+        place: WorldPoint { x: 7.0, y: 0.0 },
+        arrival: Arrival::WAYPOINT,
+    };
+    let steps = vec![fly_to];
+    let mut bench = Bench::new(Script { steps }, Settings::default());
+    let mut flown = Vec::new();
+    while bench.now_ms < FIRST_CYCLE_MS || bench.app.phase() == Phase::Recording {
+        let believed = bench.position_m.xy();
+        let turned_rad = (bench.now_ms as f32 / 1_000.0).to_radians();
+        let on_the_ground = Rotation2::new(turned_rad) * believed;
+        if is_piloted {
+            bench.app.set_seen(WorldPose {
+                x: on_the_ground.x,
+                y: on_the_ground.y,
+                yaw: turned_rad,
+            });
+        }
+        flown.push(on_the_ground);
+        bench.tick();
+    }
+    flown
+}
+
+#[test]
+fn a_pilot_keeps_the_way_on_the_ground_while_the_filter_turns_away() {
+    let aside_m = |flown: &[Vector2<f32>]| flown.iter().map(|at| at.y.abs()).fold(0.0, f32::max);
+    let farthest_m = |flown: &[Vector2<f32>]| flown.iter().map(|at| at.x).fold(0.0, f32::max);
+    let piloted = flown_with_a_turning_filter(true);
+    // Between two cycles the filter turns by a tenth of a degree: 1.2 cm at 7 m.
+    assert!(aside_m(&piloted) < 0.02, "{}", aside_m(&piloted));
+    assert!((farthest_m(&piloted) - 7.0).abs() < 0.02);
+    // By odometry alone the leg's end is turned by the 18 degrees of 4 and 14 s.
+    let alone = aside_m(&flown_with_a_turning_filter(false));
+    assert!(alone > 2.0, "{alone}");
 }
 
 /// What a camera does on the way back from `short_route`, in its n-th answer to a STATE: it works

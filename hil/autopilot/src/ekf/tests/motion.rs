@@ -200,7 +200,7 @@ fn the_supervisor_looks_at_each_axis_of_position_and_of_body_velocity() {
     ] {
         state.position = position.into();
         state.velocity = velocity.into();
-        assert_eq!(state.out_of_bounds(), out, "{position:?} {velocity:?}");
+        assert_eq!(state.out_of_bounds(100.0), out, "{position:?} {velocity:?}");
     }
 }
 

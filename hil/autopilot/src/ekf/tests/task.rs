@@ -157,6 +157,21 @@ fn the_supervisor_resets_the_filter_one_tick_after_it_leaves_its_bounds() {
 }
 
 #[test]
+fn a_supervisor_with_wider_bounds_leaves_the_filter_alone() {
+    let parameters = Parameters {
+        max_position_m: 500.0,
+        ..Parameters::default()
+    };
+    for (place_m, resets) in [(499.5, 0), (500.5, 1)] {
+        let mut ekf = Ekf::new(parameters, 0);
+        ekf.enqueue(fix(place_m, 0.001)).expect("room");
+        ekf.tick(0, true);
+        ekf.tick(1, true);
+        assert_eq!(ekf.resets(), resets, "{place_m} m");
+    }
+}
+
+#[test]
 fn a_velocity_beyond_ten_metres_per_second_resets_the_filter() {
     let mut ekf = Ekf::new(Parameters::default(), 0);
     let shoved = ImuSample {
