@@ -20,7 +20,7 @@ mod grey;
 mod mfdid;
 pub mod presets;
 pub(crate) mod quadratic;
-mod search;
+pub mod search;
 mod warp_search;
 
 use nalgebra::Vector2;
@@ -31,6 +31,7 @@ use crate::horizon::BEARINGS;
 pub use coefficients::{CoefficientCode, Harmonics, MOST_FREQUENCIES};
 pub(crate) use fourier::best_rotation;
 pub use fourier::{Alignment, Fourier, FourierParameters, Unknowns};
+pub use grey::Pixels;
 pub use mfdid::{Mfdid, MfdidParameters, MfdidSeen, Slope};
 pub use search::{Resolution, Search, SearchParameters};
 pub use warp_search::{WarpParameters, WarpSearch};

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::condition::Condition;
 use super::field::{self, Field};
 use super::judge;
+use super::search_vectors;
 use super::settings::{Method, Settings};
 use super::survey::{Current, Survey};
 use crate::parallel;
@@ -89,6 +90,14 @@ pub struct Vectors {
 }
 
 impl Vectors {
+    /// Not one, at so many positions.
+    pub(super) fn none(positions: usize) -> Self {
+        Self {
+            moves: vec![None; positions],
+            qualities: vec![0.0; positions],
+        }
+    }
+
     /// Unit vectors.
     pub fn directions(&self) -> Field {
         let unit = |[x, y]: [f32; 2]| {
@@ -103,7 +112,7 @@ impl Vectors {
 pub fn vectors_with(survey: &Survey, settings: &Settings) -> Vec<Vectors> {
     match settings {
         Settings::Fourier(parameters) => vectors(survey, &Fourier::new(*parameters)),
-        Settings::Search(parameters) => vectors(survey, &Search::new(*parameters)),
+        Settings::Search(parameters) => search_vectors::vectors(survey, &Search::new(*parameters)),
         Settings::Mfdid(parameters) => vectors(survey, &Mfdid::new(*parameters)),
         Settings::Warp(parameters) => vectors(survey, &WarpSearch::new(*parameters)),
     }
@@ -116,11 +125,7 @@ pub fn vectors<M: HomingMethod>(survey: &Survey, method: &M) -> Vec<Vectors> {
         .iter()
         .map(|goal| method.remember(&goal.view))
         .collect();
-    let none = Vectors {
-        moves: vec![None; survey.currents.len()],
-        qualities: vec![0.0; survey.currents.len()],
-    };
-    let mut found = vec![none; memories.len()];
+    let mut found = vec![Vectors::none(survey.currents.len()); memories.len()];
     for (index, current) in survey.currents.iter().enumerate() {
         let Some(current) = current else {
             continue;
@@ -136,7 +141,8 @@ pub fn vectors<M: HomingMethod>(survey: &Survey, method: &M) -> Vec<Vectors> {
     found
 }
 
-fn by_its_north(current: &Current, way: &Homeward) -> [f32; 2] {
+/// A vector in the frame of the place.
+pub(super) fn by_its_north(current: &Current, way: &Homeward) -> [f32; 2] {
     let [x, y] = [way.displacement.x, way.displacement.y];
     let (sin, cos) = (libm::sinf(current.turn_rad), libm::cosf(current.turn_rad));
     [cos * x - sin * y, sin * x + cos * y]
@@ -301,4 +307,31 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
         count += 1;
     }
     sum / f64::from(count.max(1))
+}
+
+/// A line with a mean area and its standard error, for tests of what is made of lines.
+#[cfg(test)]
+pub(super) fn row_of(
+    world: &str,
+    method: Method,
+    bytes: u8,
+    [area_m2, stderr_m2]: [f64; 2],
+) -> Row {
+    Row {
+        world: world.to_owned(),
+        method,
+        bytes,
+        condition: Condition::None,
+        area_m2,
+        area25_m2: area_m2,
+        area_per_byte: area_m2 / f64::from(bytes),
+        stderr_m2,
+        end_error_m: 0.0,
+        end_stderr_m: 0.0,
+        roc: None,
+        snapshots: 9,
+        tuned_on: world.to_owned(),
+        free_m2: 46.0,
+        settings: String::new(),
+    }
 }

@@ -9,14 +9,17 @@
 //! at all positions of a 12.7 cm grid, each method tuned for each size by a grid search.
 
 pub mod condition;
+pub mod crossing;
 pub mod field;
 pub mod grid;
 pub mod judge;
+pub mod markdown;
 pub mod measure;
 pub mod pictures;
 pub mod place;
 pub mod plots;
 pub mod render;
+mod search_vectors;
 pub mod settings;
 pub mod survey;
 

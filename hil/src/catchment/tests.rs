@@ -1,3 +1,5 @@
+use nav::methods::{Resolution, Search, SearchParameters, presets};
+
 use super::condition::TABLE;
 use super::grid::Grid;
 use super::*;
@@ -111,4 +113,20 @@ fn what_ships_is_not_tuned_and_what_is_tuned_says_where() {
     let rows = evaluate(&survey, &tasks, &settings, "the lounge", |_| ());
     let tuned_on: Vec<_> = rows.iter().map(|row| row.tuned_on.as_str()).collect();
     assert_eq!(tuned_on, ["shipped", "the lounge"]);
+}
+
+#[test]
+fn the_searches_of_all_views_at_once_find_what_each_finds_alone() {
+    let place = thinned(lounge(), 3);
+    let survey = Survey::take(&place, Condition::Heading(30.0), 4, |_| ()).unwrap();
+    for resolution in [Resolution::Memory, Resolution::Full] {
+        let parameters = SearchParameters {
+            rotations: 2,
+            ..presets::search(10, resolution)
+        };
+        let alone = measure::vectors(&survey, &Search::new(parameters));
+        let at_once = measure::vectors_with(&survey, &Settings::Search(parameters));
+        assert!(at_once[0].moves.iter().any(Option::is_some));
+        assert_eq!(at_once, alone, "{resolution:?}");
+    }
 }

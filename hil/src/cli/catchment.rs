@@ -8,8 +8,11 @@ use serde::Serialize;
 
 use super::Failure;
 use super::console::Console;
+use crate::catchment::crossing::{Crossing, crossings};
 use crate::catchment::settings::parse_bytes;
-use crate::catchment::{self, Condition, Method, Named, Place, Row, Survey, Task, measure, plots};
+use crate::catchment::{
+    self, Condition, Method, Named, Place, Row, Survey, Task, markdown, measure, plots,
+};
 use crate::folder;
 
 /// Options of `hil catchment`.
@@ -20,7 +23,8 @@ use crate::folder;
     hil catchment --world hdri:room.hdr,7.3x6.9x3 --condition none,heading:30,person\n  \
     hil catchment --world images:gaffin --csv table.csv\n  \
     hil catchment --out fig3                         with the pictures of Fig. 3\n  \
-    hil catchment --world hall --tune-on office --tune-on arena-panels\n\n\
+    hil catchment --world hall --tune-on office --tune-on arena-panels\n  \
+    hil catchment --method fourier,search,mfdid,default --condition none,tilt:10 --markdown\n\n\
     Worlds: a name of the library's (`hil look` lists them) with #SEED behind it if wanted, a TOML file,\n\
     hdri:FILE[,WxLxH] (a panorama on the faces of a room, metres) or images:DIR (pictures on a grid with a\n\
     manifest.toml). Methods: fourier, search, search-full (the current view at its full resolution), mfdid,\n\
@@ -51,9 +55,12 @@ pub struct Arguments {
     /// Snapshots of each place, about
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u16).range(1..=400))]
     snapshots: u16,
-    /// Ends with one JSON object: rows
+    /// Ends with one JSON object: rows, crossings (the size from which on a method's area is above Fourier's)
     #[arg(long)]
     json: bool,
+    /// The comparison as a Markdown table, and the lines that the default loses
+    #[arg(long, conflicts_with = "json")]
+    markdown: bool,
     /// Folder for the pictures of Fig. 3, two of each place and condition: maps of one snapshot, and areas over bytes
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
@@ -66,6 +73,7 @@ pub struct Arguments {
 #[derive(Debug, Serialize)]
 struct Outcome {
     rows: Vec<Row>,
+    crossings: Vec<Crossing>,
 }
 
 pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
@@ -109,10 +117,13 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
         write_csv(file, &rows).map_err(|error| format!("{}: {error}", file.display()))?;
         console.status("Table", &file.display().to_string());
     }
+    let crossings = crossings(&rows);
     if arguments.json {
-        console.result(&serde_json::to_string(&Outcome { rows })?)?;
+        console.result(&serde_json::to_string(&Outcome { rows, crossings })?)?;
+    } else if arguments.markdown {
+        console.result(&markdown::table(&rows))?;
     } else {
-        console.result(&in_words(&rows))?;
+        console.result(&in_words(&rows, &crossings))?;
     }
     Ok(true)
 }
@@ -190,7 +201,7 @@ fn write_csv(file: &PathBuf, rows: &[Row]) -> Result<(), csv::Error> {
 }
 
 /// The table for people, without a newline at the end.
-fn in_words(rows: &[Row]) -> String {
+fn in_words(rows: &[Row], crossings: &[Crossing]) -> String {
     let mut lines = Vec::new();
     let mut heading = None;
     for row in rows {
@@ -218,5 +229,6 @@ fn in_words(rows: &[Row]) -> String {
             row.settings
         ));
     }
+    lines.extend(crossings.iter().map(Crossing::to_string));
     lines.join("\n")
 }
