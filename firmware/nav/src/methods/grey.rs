@@ -84,7 +84,7 @@ impl LowPass {
     pub fn new(count: usize, frequencies: u8) -> Self {
         Self {
             count,
-            frequencies: usize::from(frequencies).clamp(1, (count - 1) / 2),
+            frequencies: usize::from(frequencies).clamp(1, count / 2),
             roots: core::array::from_fn(|n| {
                 let angle = TAU * n as f32 / count as f32;
                 Complex::new(libm::cosf(angle), libm::sinf(angle))
@@ -103,7 +103,9 @@ impl LowPass {
             for (n, luma) in pixels.iter().enumerate() {
                 coefficient += self.root(k, n).conj() * *luma;
             }
-            coefficient *= 2.0 / self.count as f32;
+            // An even ring's highest frequency is its own mirror image.
+            let images = if 2 * k == self.count { 1.0 } else { 2.0 };
+            coefficient *= images / self.count as f32;
             let k_f = k as f32;
             for n in 0..self.count {
                 let wave = coefficient * self.root(k, n);

@@ -165,6 +165,21 @@ fn the_search_returns_the_nearest_of_its_guesses() {
 }
 
 #[test]
+fn a_filter_that_keeps_all_frequencies_takes_the_mean_alone() {
+    for count in [4, 7, 10, 32] {
+        let pixels: grey::Pixels = (0..count).map(|n| (37 * n % 29) as f32).collect();
+        let mean = pixels.iter().sum::<f32>() / count as f32;
+        let filtered = grey::LowPass::new(count, u8::MAX).curve(&pixels).value;
+        for (before, after) in pixels.iter().zip(&filtered) {
+            assert!(
+                (before - mean - after).abs() < 1e-3,
+                "{count}: {filtered:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn the_search_finds_a_turn_among_those_it_tries() {
     let place = Place::new(3);
     let turning = Search::new(SearchParameters {
@@ -311,6 +326,21 @@ fn the_warp_search_finds_its_way_from_half_the_distance() {
             assert!(error.norm() < 0.03, "seed {seed}, {goal:?}: {way:?}");
         }
     }
+}
+
+#[test]
+fn next_to_the_goal_the_default_is_as_exact_as_fourier_homing() {
+    let default = WarpSearch::new(presets::default(32, 0));
+    let fourier = Fourier::new(presets::fourier(32));
+    let [mut searched, mut stepped] = [0.0; 2];
+    for seed in SEEDS {
+        let place = Place::new(seed);
+        let (here, goal) = (place.view(HERE, 0.0), place.view([0.01, -0.02], 0.0));
+        let home = Vector2::new(0.01, -0.02);
+        searched += (way(&default, &here, &goal).displacement - home).norm();
+        stepped += (way(&fourier, &here, &goal).displacement - home).norm();
+    }
+    assert!(searched < 1.5 * stepped, "{searched} {stepped}");
 }
 
 #[test]

@@ -260,6 +260,13 @@ impl WarpSearch {
             found.displacement += step.xy().cap_magnitude(POLISH_BOUND);
             found.rotation -= step.z;
         }
+        // Nearer to here than to any guess the view itself is what to step from.
+        if found.displacement.norm() < 0.5 * self.distances[0]
+            && let Ok(step) = quadratic::minimum(&model, seen, &goal)
+        {
+            found.displacement = step.xy().cap_magnitude(POLISH_BOUND);
+            found.rotation = best.rotation - step.z;
+        }
     }
 }
 
