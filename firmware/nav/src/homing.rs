@@ -72,6 +72,20 @@ impl HomingParameters {
         least_variance: 1.0,
     };
 
+    /// The same from a metre away and more.
+    ///
+    /// - Weights by k^-1: the lower a frequency, the farther away the linear model still points home.
+    /// - Rotations within ±2 steps (±5.6 degrees): a move by d turns what is abeam by asin(d/R), 24
+    ///   degrees for 2 of 5 m, and a search as wide as that takes the move for a turn. A heading strays
+    ///   by a few degrees in the minute since the snapshot, and φ follows beyond.
+    pub(crate) fn from_afar(mut self) -> Self {
+        for (weight, k) in self.weights.iter_mut().zip(1_u8..) {
+            *weight /= f32::from(k);
+        }
+        self.rotation_bound = self.rotation_bound.min(2);
+        self
+    }
+
     /// The same with a rotation search within `turn` radians, where that is narrower.
     pub(crate) fn turned_at_most(mut self, turn: f32) -> Self {
         // Saturates where the turn is unbounded.

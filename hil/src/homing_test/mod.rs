@@ -150,4 +150,13 @@ mod tests {
         assert!(run.end_error_m() < NEAR_M, "{}", run.end_error_m());
         assert_eq!(fly(&scenario, start_m).unwrap(), run);
     }
+
+    #[test]
+    fn a_drone_that_knows_its_heading_finds_home_where_the_view_fits_better_turned() {
+        // In this arena a rotation search of ±31 degrees turns the vector of both starts away from home.
+        for start in [2, 8] {
+            let run = fly(&nominal("arena", 4), starts_m()[start]).unwrap();
+            assert!(run.end_error_m() < NEAR_M, "{start}: {}", run.end_error_m());
+        }
+    }
 }

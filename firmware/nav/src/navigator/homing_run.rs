@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 
 use super::parameters::{Parameters, has_passed};
 use super::step::{Arrival, Event, SetPoint, Source, Step};
-use crate::homing::{self, HomingVector, NoVectorReason, Resemblance};
+use crate::homing::{self, HomingParameters, HomingVector, NoVectorReason, Resemblance};
 use crate::pose::Pose;
 use crate::snapshot::StoredView;
 use crate::spectrum::Spectrum;
@@ -95,7 +95,8 @@ impl HomingRun {
         view: Option<&Spectrum>,
         step: &mut Step,
     ) -> SetPoint {
-        let vector = view.map(|view| vector(parameters, self.turn_limit, stored, view));
+        let homing = self.homing(parameters, pose);
+        let vector = view.map(|view| vector(homing, self.turn_limit, stored, view));
         self.take(parameters, pose, vector, step)
     }
 
@@ -114,7 +115,7 @@ impl HomingRun {
             if is_of_another_place(parameters, stored, view) {
                 Err(NoVectorReason::OtherPlace)
             } else {
-                vector(parameters, self.turn_limit, stored, view)
+                vector(parameters.homing, self.turn_limit, stored, view)
             }
         });
         self.take(parameters, pose, vector, step)
@@ -150,6 +151,15 @@ impl HomingRun {
             target: self.target,
             start: pose.position,
             delta_yaw: self.filtered.map_or(0.0, |filtered| filtered.rotation),
+        }
+    }
+
+    /// By how far away odometry has the snapshot.
+    fn homing(&self, parameters: &Parameters, pose: &Pose) -> HomingParameters {
+        if (pose.position - self.fallback).norm() > parameters.far_m {
+            parameters.homing.from_afar()
+        } else {
+            parameters.homing
         }
     }
 
@@ -249,12 +259,12 @@ impl HomingRun {
 
 /// The vector, of a turn that is believed.
 fn vector(
-    parameters: &Parameters,
+    homing: HomingParameters,
     turn_limit: f32,
     stored: &StoredView,
     view: &Spectrum,
 ) -> Result<HomingVector, NoVectorReason> {
-    let homing = parameters.homing.turned_at_most(turn_limit);
+    let homing = homing.turned_at_most(turn_limit);
     let vector = match stored {
         StoredView::Paper(snapshot) => homing::home(view, snapshot, &homing),
         StoredView::Packed(snapshot) => homing::home_packed(view, snapshot, &homing),

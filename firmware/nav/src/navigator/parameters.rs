@@ -85,6 +85,8 @@ pub struct Parameters {
     pub home_period_ms: u32,
     /// Fourier homing.
     pub homing: HomingParameters,
+    /// Farther than this from where odometry has the snapshot it is that from afar.
+    pub far_m: f32,
 }
 
 impl Parameters {
@@ -120,6 +122,8 @@ impl Parameters {
     /// - 20 m without sight: odometry is then off by 1 m (crazyflie-firmware kalman_core with this
     ///   drone's sensors), as far as a search and homing reach together.
     /// - 60 s to the next point: the longest stored vector of 18 m at 0.3 m/s.
+    /// - From afar beyond 1 m: nearer, a turn is told from a move. On a route homing never starts so far
+    ///   away; only back to a single snapshot (paper, Fig. 4) does it.
     /// - The app applies a correction once it arrives and the filter within two periods: 300 ms. Two
     ///   realignments within a second could contradict each other.
     /// - Each MAP goes out once, and a broken one is lost. That the drone is home, the autopilot must
@@ -155,6 +159,7 @@ impl Parameters {
         realignment_interval_ms: 1_000,
         home_period_ms: 1_000,
         homing: HomingParameters::DEFAULT,
+        far_m: 1.0,
     };
 }
 

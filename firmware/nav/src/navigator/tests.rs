@@ -425,6 +425,24 @@ fn a_frame_that_is_late_changes_neither_the_set_point_nor_the_realignment() {
 }
 
 #[test]
+fn a_turn_is_searched_for_near_a_snapshot_and_not_from_afar() {
+    let turn = 0.45_f32;
+    let turned = view().rotated(turn);
+    for (away_m, is_found) in [(0.0, true), (0.9, true), (1.1, false), (2.0, false)] {
+        let mut bench = Bench::new();
+        bench.record(0x01, 0.0);
+        bench.command(0x11);
+        let step = bench.step(away_m, 0.0, Some(&turned));
+        let delta_yaw = step.vector.unwrap().delta_yaw;
+        assert_eq!(
+            (delta_yaw.abs() - turn).abs() < 0.02,
+            is_found,
+            "{away_m} m away: {delta_yaw}"
+        );
+    }
+}
+
+#[test]
 fn a_pose_that_is_not_finite_is_reported_and_ignored() {
     let mut bench = Bench::new();
     bench.record(0x03, 3.0);
