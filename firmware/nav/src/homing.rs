@@ -78,7 +78,7 @@ impl HomingParameters {
     /// - Rotations within ±2 steps (±5.6 degrees): a move by d turns what is abeam by asin(d/R), 24
     ///   degrees for 2 of 5 m, and a search as wide as that takes the move for a turn. A heading strays
     ///   by a few degrees in the minute since the snapshot, and φ follows beyond.
-    pub(crate) fn from_afar(mut self) -> Self {
+    pub(crate) fn seen_from_afar(mut self) -> Self {
         for (weight, k) in self.weights.iter_mut().zip(1_u8..) {
             *weight /= f32::from(k);
         }

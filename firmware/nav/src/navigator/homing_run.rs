@@ -157,7 +157,7 @@ impl HomingRun {
     /// By how far away odometry has the snapshot.
     fn homing(&self, parameters: &Parameters, pose: &Pose) -> HomingParameters {
         if (pose.position - self.fallback).norm() > parameters.far_m {
-            parameters.homing.from_afar()
+            parameters.homing.seen_from_afar()
         } else {
             parameters.homing
         }
