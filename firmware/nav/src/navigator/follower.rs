@@ -216,8 +216,9 @@ impl Follower {
 
     /// How far the drone may be turned against its own estimate, radians. Wider, the rotation search finds
     /// other parts of the room that look alike, and one wrong turn taken for true leads off the route.
+    /// Along a visual sequence nobody measures the way since the last realignment: any turn may be.
     fn turn_limit(&self, parameters: &Parameters) -> f32 {
-        if self.heading_is_known {
+        if self.heading_is_known && self.unseen_m > 0.0 {
             parameters.heading_error_rad + parameters.heading_drift_rad_m * self.unseen_m
         } else {
             f32::INFINITY

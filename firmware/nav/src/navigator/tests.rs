@@ -397,6 +397,21 @@ fn a_turn_that_no_odometry_is_off_by_is_not_believed_once_the_heading_was_realig
 }
 
 #[test]
+fn along_a_visual_sequence_any_turn_is_believed() {
+    let mut bench = Bench::new();
+    bench.record(0x05, 0.6);
+    let recorded = bench.snapshots();
+    bench.command(0x12);
+    for _ in 0..300 {
+        let turned = view().rotated(25_f32.to_radians());
+        bench.step(0.0, 0.0, Some(&turned));
+    }
+    let realigned = bench.count(|event| matches!(event, Event::Realigned { .. }));
+    assert!(recorded > 1);
+    assert_eq!(realigned, recorded);
+}
+
+#[test]
 fn the_longer_the_way_since_a_realignment_the_farther_a_turn_is_believed() {
     // 4 m after the first: 11.5 degrees and 4.6.
     assert!(headings_told([0.0, 30.0, 15.0])[2].is_some());
