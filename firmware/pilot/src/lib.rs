@@ -208,9 +208,9 @@ impl Pilot {
     /// one changes nothing.
     ///
     /// The published client sends no arguments. Those that follow, in this order, hold from now on; zero,
-    /// or none, leaves what is: the way between two snapshots along odometry, decimetres, or [`SPACING_BY_THEORY`]; the number of
-    /// the [`SnapshotFormat`] of the next route; how far a stored way may deviate from the one flown,
-    /// decimetres.
+    /// or none, leaves what is: the way between two snapshots along odometry, decimetres, or
+    /// [`SPACING_BY_THEORY`]; the number of the [`SnapshotFormat`] of the next route; how far a stored way
+    /// may deviate from the one flown, decimetres.
     fn on_command(&mut self, command: &link::Command, outbox: &mut Outbox) {
         let before = self.navigator.mode_byte();
         let understood = self.navigator.command(command.command).is_ok();

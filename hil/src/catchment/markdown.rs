@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use super::measure::Row;
 use super::settings::Method;
 
-/// The table, the largest area of each line in bold, and below it the lines that the default loses.
+/// The table, the largest area of each line in bold, and below it the lines that the default loses, where it
+/// takes part.
 pub fn table(rows: &[Row]) -> String {
     let mut methods: Vec<Method> = Vec::new();
     for row in rows {
@@ -45,11 +46,13 @@ pub fn table(rows: &[Row]) -> String {
         text.push('\n');
         lost.extend(line.iter().filter_map(|row| loss(row, best)));
     }
-    text.push('\n');
-    text.push_str(&match lost.len() {
-        0 => "The default loses no line.".to_owned(),
-        _ => format!("The default loses:\n\n{}", lost.join("\n")),
-    });
+    if methods.contains(&Method::Default) {
+        text.push('\n');
+        text.push_str(&match lost.len() {
+            0 => "The default loses no line.".to_owned(),
+            _ => format!("The default loses:\n\n{}", lost.join("\n")),
+        });
+    }
     text
 }
 
@@ -116,5 +119,6 @@ mod tests {
             .collect();
         assert_eq!(lost, ["- none, attic, 16 bytes: 2.0 ± 5.0 m² to fourier"]);
         assert!(table(&rows[..2]).ends_with("The default loses no line."));
+        assert!(!table(&rows[..1]).contains("default"));
     }
 }
