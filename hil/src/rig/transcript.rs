@@ -83,6 +83,8 @@ pub struct Transcript {
     pub taken: Vec<Taken>,
     /// The frames' shape.
     pub shape: Shape,
+    /// What the log told of, and what was sent.
+    pub known: Gap,
 }
 
 /// Coefficients of the snapshots of a recorded route by their index.
@@ -131,7 +133,33 @@ impl Transcript {
                 }
             }
         }
-        Ok(Self { taken, shape })
+        Ok(Self {
+            taken,
+            shape,
+            known: gap,
+        })
+    }
+
+    /// In what a board's snapshots differ from those that this machine takes; none where they are the same.
+    ///
+    /// # Errors
+    /// [`CalibrationError`], never with the default lens.
+    pub fn difference(&self, of_board: &Snapshots) -> Result<Option<String>, CalibrationError> {
+        let here = self.snapshots()?;
+        let differs = |index: &u16| of_board.get(index) != here.get(index);
+        let mut all = of_board.keys().chain(here.keys());
+        Ok(all.find(|index| differs(index)).map(|index| {
+            format!(
+                "the board took other snapshots than this machine does from the same frames: the first is {index}, {:?} \
+                 there and {:?} here; its log tells of {} frames of {} and {} STATE messages of {}",
+                of_board.get(index),
+                here.get(index),
+                self.known.logged_frames,
+                self.known.frames,
+                self.known.logged_states,
+                self.known.states,
+            )
+        }))
     }
 
     /// The snapshots that this machine takes of it, by the same logic compiled for it.
