@@ -17,3 +17,5 @@ mod flights;
 mod plugs;
 #[path = "rig/probe_rs.rs"]
 mod probe_rs;
+#[path = "rig/transcript.rs"]
+mod transcript;

@@ -21,7 +21,7 @@ use super::eye::{Eye, FrameFigures};
 use super::file::Rig;
 use super::probe::{self, Image, LogSource};
 use super::ready::{Ready, Unready, in_words, make_ready};
-use super::transcript::{Gap, Order, Snapshots, Transcript};
+use super::transcript::{Gap, Order, Snapshots, Transcript, snapshots_said};
 
 /// The name in the summary.
 const BACKEND: &str = "board";
@@ -57,10 +57,7 @@ pub struct BoardFlight {
 impl BoardFlight {
     /// The snapshots that the board took on the way out.
     pub fn snapshots(&self) -> Snapshots {
-        let marks = self.flown.recording.snapshots.iter();
-        marks
-            .map(|mark| (mark.index, mark.coefficients.clone()))
-            .collect()
+        snapshots_said(&self.flown.recording.deeds)
     }
 }
 

@@ -9,6 +9,7 @@ use nav::CalibrationError;
 use pilot::{Outbox, Pilot};
 
 use crate::board::FirmwareLog;
+use crate::record::{Deed, Side, What};
 
 /// What may still be on its way when a flight ends.
 const TAIL: usize = 3;
@@ -195,6 +196,21 @@ impl Transcript {
     }
 }
 
+/// The snapshots that a board took on the way out, by what both ends said on the link. The app's own
+/// list may lack some: of ten messages it uses nine.
+pub fn snapshots_said(deeds: &[Deed]) -> Snapshots {
+    let mut said = Said::default();
+    for deed in deeds {
+        if let What::Sent { by, message } = &deed.what {
+            match by {
+                Side::Autopilot => said.on_sent(message),
+                Side::Camera => said.on_said(message),
+            }
+        }
+    }
+    said.into_snapshots()
+}
+
 /// Collects the snapshots out of what a board says while it records.
 #[derive(Debug, Default)]
 pub struct Said {
@@ -213,14 +229,20 @@ impl Said {
 
     /// The board has sent bytes.
     pub fn on_answer(&mut self, bytes: &[u8]) {
-        for frame in self.parser.frames(bytes) {
-            if let Message::Map(map) = frame.message
-                && !self.follows
-                && !map.snapshot_ak_bk.is_empty()
-            {
-                let coefficients = map.snapshot_ak_bk.to_vec();
-                self.snapshots.insert(map.snapshot_index, coefficients);
-            }
+        let heard: Vec<_> = self.parser.frames(bytes).collect();
+        for frame in heard {
+            self.on_said(&frame.message);
+        }
+    }
+
+    /// The board has sent a message.
+    pub fn on_said(&mut self, message: &Message) {
+        if let Message::Map(map) = message
+            && !self.follows
+            && !map.snapshot_ak_bk.is_empty()
+        {
+            let coefficients = map.snapshot_ak_bk.to_vec();
+            self.snapshots.insert(map.snapshot_index, coefficients);
         }
     }
 
