@@ -99,15 +99,17 @@ impl Attendant for NoAttendant {
 /// # Errors
 /// [`LiveError`] where it cannot begin.
 pub fn fly_aircraft(setup: &AutopilotSetup, say: &dyn Fn(Notice)) -> Result<Flown, LiveError> {
-    fly_attended(setup, &mut NoAttendant, say)
+    let link = Port::open(&setup.common.link, setup.common.baud)?;
+    fly_attended(setup, link, &mut NoAttendant, say)
 }
 
-/// The same for a board that has to be attended to.
+/// The same for a board that has to be attended to, at a link that is open already.
 ///
 /// # Errors
 /// [`LiveError`] where it cannot begin, or where the attendant cannot go on.
 pub fn fly_attended(
     setup: &AutopilotSetup,
+    link: Port,
     attendant: &mut dyn Attendant,
     say: &dyn Fn(Notice),
 ) -> Result<Flown, LiveError> {
@@ -116,7 +118,7 @@ pub fn fly_attended(
     let route = scenario.route.waypoints();
     let mut session = Session {
         aircraft: Aircraft::new(scenario, &route),
-        link: Port::open(&setup.common.link, setup.common.baud)?,
+        link,
         pose: setup.pose.map(Port::open_tcp).transpose()?,
         scribe: Scribe::new(flight::blank(&world, scenario), say),
         wire: Wire::new(scenario.conditions.corrupted_share, scenario.seed),

@@ -3,7 +3,7 @@
 
 use fake_sensors::camera::tcm8230::Tcm8230;
 use fake_sensors::world::World;
-use frames::Identity;
+use frames::{Identity, Shape};
 use link::Message;
 use pilot::Pilot;
 
@@ -11,8 +11,8 @@ use crate::board::native::EXTCLK_HZ;
 use crate::board::{BoardError, BoardFigures, FirmwareLog};
 use crate::flight::{self, Flown};
 use crate::live::{
-    Account, Attendant, AutopilotSetup, Common, Endpoint, LiveError, Moment, Notice, Scribe, Stop,
-    fly_attended,
+    Account, Attendant, AutopilotSetup, Common, Endpoint, LiveError, Moment, Notice, Port, Scribe,
+    Stop, fly_attended,
 };
 use crate::record::{Side, What};
 use crate::scenario::Scenario;
@@ -20,7 +20,7 @@ use crate::scenario::Scenario;
 use super::eye::{Eye, FrameFigures};
 use super::file::Rig;
 use super::probe::{self, Image, LogSource};
-use super::ready::{Ready, Unready, in_words, make_ready};
+use super::ready::{Unready, in_words, make_ready};
 use super::transcript::{Gap, Order, Snapshots, Transcript, snapshots_said};
 
 /// The name in the summary.
@@ -73,7 +73,7 @@ pub fn fly_board(setup: &BoardSetup, say: &dyn Fn(Notice)) -> Result<BoardFlight
     say(Notice::Status("Flashed", described));
     let log = probe.log(image).map_err(Unready::from)?;
     let mut bench = Bench {
-        eye: eye(&setup.scenario, ready)?,
+        eye: eye(&setup.scenario, ready.frames)?,
         log: Some(log),
         image,
         unlinked_since_ms: 0,
@@ -91,7 +91,7 @@ pub fn fly_board(setup: &BoardSetup, say: &dyn Fn(Notice)) -> Result<BoardFlight
         scenario: setup.scenario.clone(),
         pose: None,
     };
-    let flown = fly_attended(&autopilot, &mut bench, say)?;
+    let flown = fly_attended(&autopilot, ready.link, &mut bench, say)?;
     let transcript = bench.eye.take().map(|eye| {
         let (frames, shape) = eye.into_used();
         Transcript::merge(&bench.order, frames, sent(&flown), shape)
@@ -119,8 +119,8 @@ fn described(rig: &Rig, identity: Option<&Identity>) -> String {
 }
 
 /// The camera that the board is to have, exposed at first as the firmware wants it at boot.
-fn eye(scenario: &Scenario, ready: Ready) -> Result<Option<Eye>, LiveError> {
-    let Some((port, shape)) = ready.frames else {
+fn eye(scenario: &Scenario, frames: Option<(Port, Shape)>) -> Result<Option<Eye>, LiveError> {
+    let Some((port, shape)) = frames else {
         return Ok(None);
     };
     let pilot = Pilot::new(&pilot::Parameters::DEFAULT).map_err(BoardError::Calibration)?;

@@ -86,6 +86,9 @@ pub enum Unready {
 
 /// A board that is ready for a flight.
 pub struct Ready {
+    /// The link, open since the board was heard on it: what is said on a line that was closed and
+    /// opened in between may be lost.
+    pub link: Port,
     /// Where frames go; none where the camera is fitted.
     pub frames: Option<(Port, Shape)>,
 }
@@ -113,7 +116,10 @@ pub fn make_ready(
         let mut link = open("link", &rig.link)?;
         listen(&mut [&mut link], BOOT, |heard| heard[0].link);
         answered(link.heard(), rig)?;
-        return Ok(Ready { frames: None });
+        return Ok(Ready {
+            link: link.into_port(),
+            frames: None,
+        });
     };
     let (mut link, mut frames) = (open("link", &rig.link)?, open("frames", line)?);
     listen(&mut [&mut link, &mut frames], BOOT, |heard| {
@@ -124,6 +130,7 @@ pub fn make_ready(
     let mut port = frames.into_port();
     begin(&mut port)?;
     Ok(Ready {
+        link: link.into_port(),
         frames: Some((port, wanted.shape)),
     })
 }
