@@ -7,7 +7,7 @@ use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use super::lens::PanoramicLens;
 use super::{HEIGHT, WIDTH};
 use crate::vectors::{self, Kernel};
-use crate::world::{Aperture, Directions, FAN, Viewpoint, World};
+use crate::world::{Aperture, Directions, FAN, Pixels, Viewpoint, World};
 
 /// The optic images this far beyond the ring's nominal edges, in pixels: users calibrate inside.
 const RING_MARGIN_PX: f32 = 1.5;
@@ -167,10 +167,13 @@ impl Kernel for Look<'_> {
 
     #[inline(always)]
     fn run(self) {
+        let mut pixels = Pixels::none();
         for fan in self.fans {
             let ways = fan.directions.turned(self.to_world);
             let count = fan.indices.len();
-            let radiances = self.viewpoint.radiances(&ways, &fan.apertures, count);
+            let radiances = self
+                .viewpoint
+                .radiances(&ways, &fan.apertures, count, &mut pixels);
             for (index, radiance) in fan.indices.iter().zip(radiances) {
                 self.sharp[*index] = radiance;
             }

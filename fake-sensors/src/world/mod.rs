@@ -26,6 +26,7 @@ use nalgebra::Vector3;
 
 pub use error::{Reason, UnknownWorld, WorldError};
 pub use scene::Viewpoint;
+pub use scene::cover::Pixels;
 pub use scene::fan::{Directions, FAN};
 pub use scene::ray::Aperture;
 

@@ -39,6 +39,7 @@ impl Tile {
     }
 
     /// Radiance at (`u_m`, `v_m`), averaged over about `footprint_m`.
+    #[inline(always)]
     pub fn sample(&self, u_m: f32, v_m: f32, footprint_m: f32) -> f32 {
         let (u, v) = (u_m * self.texels_per_m, v_m * self.texels_per_m);
         let top = (self.levels.len() - 1) as f32;
@@ -53,10 +54,12 @@ impl Tile {
     }
 
     /// Mean radiance.
+    #[inline(always)]
     pub fn mean(&self) -> f32 {
         self.levels[self.levels.len() - 1][0][0]
     }
 
+    #[inline(always)]
     fn bilinear(&self, u: f32, v: f32, level: usize) -> f32 {
         let side = SIDE >> level;
         let scale = 1.0 / (1_u32 << level) as f32;
@@ -78,6 +81,7 @@ fn quads(texels: &[f32], side: usize) -> Vec<[f32; 4]> {
 
 /// The texel before coordinate `x` and the weight of the one behind it; they repeat after `side`, a
 /// power of two.
+#[inline(always)]
 fn place(x: f32, side: usize) -> (usize, f32) {
     let x = x - 0.5;
     // The cast rounds towards 0: one lower for negative numbers.

@@ -4,30 +4,33 @@
 //! instruction each. A box is grown by half the pixel's width at its far end before the test. Where
 //! a pixel is wider than a box, the box's [`Haze`] stands for what is in it.
 
+use core::array::from_fn;
+
 use nalgebra::Vector3;
 
-use super::cover::{Cover, Covers, Sight};
+use super::cover::Pixels;
 use super::haze::Haze;
-use super::ray::Ray;
+use super::ray::Rays;
 use super::solid::{Form, Solid};
+use crate::vectors::eight::{Eight, LANES, Subset};
 
 /// Solids in a leaf at most.
 const LEAF: usize = 4;
-/// Children that wait at most: three on each of the 19 levels that [`MAX_SOLIDS`] make at worst, and
-/// the last four.
+/// Children that wait at most, if each ray has its own: three on each of the 19 levels that [`MAX_SOLIDS`]
+/// make at worst, and the last four.
 ///
 /// [`MAX_SOLIDS`]: crate::world::build::MAX_SOLIDS
-const WAITING: usize = 64;
+const WAITING: usize = 64 * LANES;
 /// Up to this many solids are split where it is best, more in the middle.
 const SWEPT: usize = 4_096;
 /// From this many times a box's half diagonal on, half a pixel's width sees its haze.
-const BLURRED: f32 = 0.12;
+pub(super) const BLURRED: f32 = 0.12;
 /// Boxes with more solids than this have no haze: they are never that far away.
 const HAZY: usize = 512;
 
 /// Where a child leads.
 #[derive(Clone, Copy, Debug)]
-enum Child {
+pub(super) enum Child {
     Nothing,
     Node(u32),
     /// First solid and their number.
@@ -35,22 +38,22 @@ enum Child {
 }
 
 #[derive(Clone, Debug)]
-struct Node {
+pub(super) struct Node {
     /// Middles of the children's boxes: x, y, z of the four.
-    middle: [[f32; 4]; 3],
+    pub(super) middle: [[f32; 4]; 3],
     /// Their half lengths; negative where there is no child.
-    half: [[f32; 4]; 3],
+    pub(super) half: [[f32; 4]; 3],
     /// Their half diagonals.
-    radius: [f32; 4],
-    children: [Child; 4],
-    haze: [Option<Haze>; 4],
+    pub(super) radius: [f32; 4],
+    pub(super) children: [Child; 4],
+    pub(super) haze: [Option<Haze>; 4],
 }
 
 /// Solids in a tree of boxes.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
-    nodes: Vec<Node>,
-    solids: Vec<Solid>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) solids: Vec<Solid>,
 }
 
 /// A box along the axes.
@@ -104,57 +107,105 @@ impl Bvh {
         self.nodes.is_empty()
     }
 
-    /// Offers `covers` every solid that may touch the pixel and is not hidden, nearest boxes first;
-    /// adds the haze of those that are too far away.
-    pub fn visit<'a>(
-        &'a self,
-        ray: &Ray,
-        covers: &mut Covers<'a>,
-        mut offer: impl FnMut(&'a Solid, &mut Covers<'a>),
-    ) {
-        let mut waiting = [(Child::Nothing, 0.0_f32); WAITING];
-        let mut count = 0;
+    /// The way of some rays of a fan through the tree.
+    #[inline(always)]
+    pub fn walk(&self, of: Subset) -> Walk<'_> {
+        let mut waiting = Queue(heapless::Vec::new());
         if !self.nodes.is_empty() {
-            waiting[0].0 = Child::Node(0);
-            count = 1;
+            waiting.add(Waiting {
+                child: Child::Node(0),
+                of,
+                enters_m: Eight::all(0.0),
+            });
         }
-        while count > 0 {
-            count -= 1;
-            let (child, enter_m) = waiting[count];
-            if enter_m >= covers.limit_m() {
+        Walk {
+            tree: self,
+            waiting,
+        }
+    }
+}
+
+/// The way of a fan's rays through a tree, each ray's nearest boxes first.
+///
+/// Which solids a ray comes to, and in which order, is what it would be if it came alone: boxes that
+/// some rays enter in another order than others wait once for each order.
+#[derive(Debug)]
+pub struct Walk<'a> {
+    tree: &'a Bvh,
+    waiting: Queue,
+}
+
+impl<'a> Walk<'a> {
+    /// The next solids that may touch a pixel and are not hidden, and the rays that come to them; adds
+    /// the haze of boxes on the way that are too far away.
+    #[inline(always)]
+    pub fn next(&mut self, rays: &Rays, pixels: &mut Pixels<'a>) -> Option<(&'a [Solid], Subset)> {
+        let tree = self.tree;
+        while let Some(next) = self.waiting.0.pop() {
+            let of = next.of & next.enters_m.below(pixels.limits_m()).yes();
+            if of.is_empty() {
                 continue;
             }
-            match child {
+            match next.child {
                 Child::Leaf(first, solids) => {
-                    for solid in &self.solids[first as usize..(first + solids) as usize] {
-                        offer(solid, covers);
-                    }
+                    return Some((&tree.solids[first as usize..(first + solids) as usize], of));
                 }
                 Child::Node(node) => {
-                    let first_new = count;
-                    self.nodes[node as usize].visit(ray, covers, |child, enter_m| {
-                        if count >= WAITING {
-                            return;
-                        }
-                        // The last to wait is the next to be visited: the nearest.
-                        let mut place = count;
-                        while place > first_new && waiting[place - 1].1 < enter_m {
-                            waiting[place] = waiting[place - 1];
-                            place -= 1;
-                        }
-                        waiting[place] = (child, enter_m);
-                        count += 1;
-                    });
+                    tree.nodes[node as usize].visit(rays, of, pixels, &mut self.waiting);
                 }
                 Child::Nothing => {}
             }
+        }
+        None
+    }
+}
+
+/// Boxes that wait, the next to be visited last.
+#[derive(Debug)]
+struct Queue(heapless::Vec<Waiting, WAITING>);
+
+impl Queue {
+    /// Adds a box; there is room for as many as can come together.
+    #[inline(always)]
+    fn add(&mut self, next: Waiting) {
+        let added = self.0.push(next);
+        debug_assert!(added.is_ok(), "a tree deeper than its splits allow");
+    }
+}
+
+/// A box that waits for the rays that enter it.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    child: Child,
+    of: Subset,
+    /// Where each of them does.
+    enters_m: Eight,
+}
+
+impl Waiting {
+    const NOTHING: Self = Self {
+        child: Child::Nothing,
+        of: Subset::NONE,
+        enters_m: Eight([0.0; LANES]),
+    };
+}
+
+impl Waiting {
+    /// The rays that enter both boxes, and the other one earlier, or as early if it is the `later` child.
+    #[inline(always)]
+    fn goes_under(&self, other: &Self, later: bool) -> Subset {
+        let both = self.of & other.of;
+        if later {
+            both.without(other.enters_m.above(self.enters_m).yes())
+        } else {
+            both & other.enters_m.below(self.enters_m).yes()
         }
     }
 }
 
 impl Node {
     /// The ball that fills a child's box, as round as may be.
-    fn ball(&self, lane: usize) -> Solid {
+    pub(super) fn ball(&self, lane: usize) -> Solid {
         let level_m = 0.5 * (self.half[0][lane] + self.half[1][lane]);
         Solid {
             centre: Vector3::from([0, 1, 2].map(|axis| self.middle[axis][lane])),
@@ -165,77 +216,106 @@ impl Node {
         }
     }
 
-    /// Gives `wait` the children that the widening ray enters, each with the distance; adds the haze
-    /// of those that are too far away.
-    #[inline]
-    fn visit<'a>(&'a self, ray: &Ray, covers: &mut Covers<'a>, mut wait: impl FnMut(Child, f32)) {
-        let (enters_m, leaves_m, widths_m) = self.enters_m(ray, covers.limit_m());
+    /// Lets the children wait that the widening rays enter; adds the haze of those that are too far
+    /// away.
+    #[inline(always)]
+    fn visit<'a>(&'a self, rays: &Rays, of: Subset, pixels: &mut Pixels<'a>, waiting: &mut Queue) {
+        let limits_m = pixels.limits_m();
+        let mut entered = [Waiting::NOTHING; 4];
+        let mut count = 0;
         for lane in 0..4 {
-            let enter_m = enters_m[lane];
-            if enter_m > leaves_m[lane] {
+            let child = self.children[lane];
+            if matches!(child, Child::Nothing) {
                 continue;
             }
-            match &self.haze[lane] {
-                Some(haze) if widths_m[lane] > BLURRED * self.radius[lane] => {
-                    add_haze(haze, &self.ball(lane), ray, covers);
+            let (enters_m, enter, widths_m) = self.enters_m(lane, rays, limits_m);
+            let mut of = of & enter;
+            if of.is_empty() {
+                continue;
+            }
+            if let Some(haze) = &self.haze[lane] {
+                let blurred = widths_m
+                    .above(Eight::all(BLURRED * self.radius[lane]))
+                    .yes();
+                if !(of & blurred).is_empty() {
+                    pixels.add_haze(haze, &self.ball(lane), rays, of & blurred);
                 }
-                _ => wait(self.children[lane], enter_m),
+                of = of.without(blurred);
+                if of.is_empty() {
+                    continue;
+                }
             }
+            entered[count] = Waiting {
+                child,
+                of,
+                enters_m,
+            };
+            count += 1;
         }
+        wait(&entered[..count], waiting);
     }
 
-    /// Where the widening ray enters each child's box, where it leaves it (earlier, if it misses it or
-    /// the box lies beyond `limit_m`), and half the pixel's width there.
-    #[inline]
-    fn enters_m(&self, ray: &Ray, limit_m: f32) -> ([f32; 4], [f32; 4], [f32; 4]) {
-        let origin = [ray.origin.x, ray.origin.y, ray.origin.z];
-        let direction = [ray.direction.x, ray.direction.y, ray.direction.z];
-        // No solid looks further aside than this, be it level or upward.
-        let level = ray.half_across.max(ray.half_mean);
-        let widths = [level, level, ray.half_up.max(ray.half_mean)];
-        let mut to_middle = [[0.0; 4]; 3];
-        let mut reach = [0.0; 4];
-        for axis in 0..3 {
-            for lane in 0..4 {
-                to_middle[axis][lane] = self.middle[axis][lane] - origin[axis];
-                reach[lane] += to_middle[axis][lane] * direction[axis];
-            }
+    /// Where the widening rays enter a child's box, which of them do nearer than `limits_m`, and half
+    /// the pixels' width there.
+    #[inline(always)]
+    fn enters_m(&self, lane: usize, rays: &Rays, limits_m: Eight) -> (Eight, Subset, Eight) {
+        let to_middle: [f32; 3] = from_fn(|axis| self.middle[axis][lane] - rays.origin[axis]);
+        let [x, y, z] = rays.direction;
+        let reach = x * to_middle[0] + y * to_middle[1] + z * to_middle[2];
+        let reach = (reach + self.radius[lane]).larger(Eight::all(0.0));
+        let (mut enter, mut leave) = (Eight::all(0.0), limits_m);
+        for (axis, to_middle) in to_middle.into_iter().enumerate() {
+            let (slowness, pace) = (rays.inverse[axis], rays.inverse[axis].abs());
+            let middle = slowness * to_middle;
+            let half = (rays.half_widest[axis] * reach + self.half[axis][lane]) * pace;
+            enter = enter.larger(middle - half);
+            leave = leave.smaller(middle + half);
         }
-        for (reach, radius) in reach.iter_mut().zip(&self.radius) {
-            *reach = larger(*reach + radius, 0.0);
-        }
-        let (mut enter, mut leave) = ([0.0; 4], [limit_m; 4]);
-        for axis in 0..3 {
-            let (slowness, pace) = (ray.inverse[axis], ray.inverse[axis].abs());
-            for lane in 0..4 {
-                let middle = to_middle[axis][lane] * slowness;
-                let half = (self.half[axis][lane] + widths[axis] * reach[lane]) * pace;
-                enter[lane] = larger(enter[lane], middle - half);
-                leave[lane] = smaller(leave[lane], middle + half);
-            }
-        }
-        (enter, leave, reach.map(|reach| ray.half_mean * reach))
+        let misses = enter.above(leave).yes();
+        (enter, Subset::ALL.without(misses), rays.half_mean * reach)
     }
 }
 
-/// Adds what is in a box that is too small for the pixel.
-fn add_haze<'a>(haze: &'a Haze, ball: &Solid, ray: &Ray, covers: &mut Covers<'a>) {
-    if let Some(touch) = ball.touch(ray, covers.limit_m()) {
-        covers.add(Cover {
-            sight: Sight::Haze(haze),
-            distance_m: touch.distance_m,
-            share: haze.cover * touch.share(0.0),
-        });
+/// Lets boxes wait so that each ray's nearest is the next to be visited; of two at the same distance,
+/// the later child.
+#[inline(always)]
+fn wait(entered: &[Waiting], waiting: &mut Queue) {
+    if let [alone] = entered {
+        waiting.add(*alone);
+        return;
     }
-}
-
-/// `max` and `min` as one instruction each: of two numbers, neither of them NaN.
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
+    let mut left = entered.iter().fold(Subset::NONE, |all, next| all | next.of);
+    while !left.is_empty() {
+        // In the order of the first ray that is left, for all that agree with it.
+        let leader = left.leader();
+        let mut order = [0, 1, 2, 3];
+        for place in 1..entered.len() {
+            let mut at = place;
+            let enter_m = entered[order[place]].enters_m.0[leader];
+            while at > 0 && entered[order[at - 1]].enters_m.0[leader] < enter_m {
+                order.swap(at - 1, at);
+                at -= 1;
+            }
+        }
+        let order = &order[..entered.len()];
+        let mut agree = left;
+        for (place, &under) in order.iter().enumerate() {
+            for &over in &order[place + 1..] {
+                agree = agree.without(entered[over].goes_under(&entered[under], over < under));
+            }
+        }
+        let agree = agree | Subset::only(leader);
+        for &next in order {
+            let of = entered[next].of & agree;
+            if !of.is_empty() {
+                waiting.add(Waiting {
+                    of,
+                    ..entered[next]
+                });
+            }
+        }
+        left = left.without(agree);
+    }
 }
 
 /// Builds the node over `solids`, which begin at `first`, and gives its index.

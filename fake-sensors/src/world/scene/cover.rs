@@ -1,7 +1,13 @@
 //! What a pixel sees, front to back.
 
+use core::array::from_fn;
+
+use heapless::Vec;
+
 use super::haze::Haze;
+use super::ray::Rays;
 use super::solid::Solid;
+use crate::vectors::eight::{Eight, LANES, Subset};
 
 /// Nearest things that a pixel keeps: what lies behind that many, each covering a part of it, adds
 /// next to nothing.
@@ -30,10 +36,9 @@ pub struct Cover<'a> {
 }
 
 /// The nearest things in a pixel, nearest first.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Covers<'a> {
-    kept: [Option<Cover<'a>>; KEPT],
-    count: usize,
+    kept: Vec<Cover<'a>, KEPT>,
     limit_m: f32,
     /// What all together let through, with those that have been dropped.
     through: f32,
@@ -44,44 +49,57 @@ impl<'a> Covers<'a> {
     /// Nothing yet; nothing beyond `limit_m` counts.
     pub fn before(limit_m: f32) -> Self {
         Self {
-            kept: [None; KEPT],
-            count: 0,
+            kept: Vec::new(),
             limit_m,
             through: 1.0,
             closed: false,
         }
     }
 
+    /// The same again.
+    #[inline(always)]
+    fn begin(&mut self, limit_m: f32) {
+        self.kept.clear();
+        self.limit_m = limit_m;
+        self.through = 1.0;
+        self.closed = false;
+    }
+
     /// What lies beyond does not count.
+    #[inline(always)]
     pub fn limit_m(&self) -> f32 {
         self.limit_m
     }
 
     /// Whether all that is behind is hidden.
+    #[inline(always)]
     pub fn closed(&self) -> bool {
         self.closed
     }
 
     /// The things, nearest first.
+    #[inline(always)]
     pub fn iter(&self) -> impl Iterator<Item = &Cover<'a>> {
-        self.kept[..self.count].iter().flatten()
+        self.kept.iter()
     }
 
-    /// Adds a thing; nothing farther than the last that fits counts. Its place depends on its distance alone, whatever the order of adding.
+    /// Adds a thing; nothing farther than the last that fits counts. Its place depends on its distance
+    /// alone, whatever the order of adding.
+    #[inline(always)]
     pub fn add(&mut self, cover: Cover<'a>) {
         if cover.distance_m >= self.limit_m || cover.share <= 0.0 {
             return;
         }
-        let farther = self.kept[..self.count].iter().rev().flatten();
-        let farther = farther
-            .take_while(|kept| kept.distance_m > cover.distance_m)
-            .count();
-        let place = self.count - farther;
-        self.count = (self.count + 1).min(KEPT);
-        self.kept[place..self.count].rotate_right(1);
-        self.kept[place] = Some(cover);
-        if let Some(Some(last)) = self.kept.get(KEPT - 1)
-            && self.count == KEPT
+        let farther = self.kept.iter().rev();
+        let farther = farther.take_while(|kept| kept.distance_m > cover.distance_m);
+        let place = self.kept.len() - farther.count();
+        if self.kept.is_full() {
+            self.kept.pop();
+        }
+        // The limit keeps out what would come behind the last of a full list, so there is room.
+        if self.kept.insert(place, cover).is_ok()
+            && self.kept.is_full()
+            && let Some(last) = self.kept.last()
         {
             self.limit_m = last.distance_m;
         }
@@ -92,18 +110,88 @@ impl<'a> Covers<'a> {
     }
 
     /// Drops what is hidden.
+    #[inline(always)]
     fn close(&mut self) {
         let mut through = 1.0;
-        for (index, cover) in self.kept[..self.count].iter().flatten().enumerate() {
+        for (index, cover) in self.kept.iter().enumerate() {
             through *= 1.0 - cover.share;
             if through < OPAQUE {
                 self.limit_m = cover.distance_m;
-                self.count = index + 1;
                 self.closed = true;
+                self.kept.truncate(index + 1);
                 break;
             }
         }
         self.through = through;
+    }
+}
+
+/// What the pixels of a fan see: kept from one fan to the next, for that is quicker than to make it anew.
+#[derive(Clone, Debug)]
+pub struct Pixels<'a> {
+    covers: [Covers<'a>; LANES],
+    limits_m: Eight,
+    all: Subset,
+}
+
+impl<'a> Pixels<'a> {
+    /// No pixel yet.
+    #[must_use]
+    pub fn none() -> Self {
+        Self {
+            covers: from_fn(|_| Covers::before(0.0)),
+            limits_m: Eight::all(0.0),
+            all: Subset::NONE,
+        }
+    }
+
+    /// Nothing yet in `all` that there are; nothing beyond `limits_m` counts.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, limits_m: Eight, all: Subset) {
+        for (covers, limit_m) in self.covers.iter_mut().zip(limits_m.0) {
+            covers.begin(limit_m);
+        }
+        (self.limits_m, self.all) = (limits_m, all);
+    }
+
+    /// Those that there are.
+    #[inline(always)]
+    pub(super) fn all(&self) -> Subset {
+        self.all
+    }
+
+    /// What lies beyond does not count, for each.
+    #[inline(always)]
+    pub(super) fn limits_m(&self) -> Eight {
+        self.limits_m
+    }
+
+    /// What one of them sees, below [`LANES`].
+    #[inline(always)]
+    pub(super) fn covers(&self, pixel: usize) -> &Covers<'a> {
+        &self.covers[pixel]
+    }
+
+    /// Adds a thing to those that it covers a part of, as far away and as large as it is there.
+    #[inline(always)]
+    pub(super) fn add(&mut self, sight: Sight<'a>, of: Subset, distances_m: Eight, shares: Eight) {
+        for pixel in of.iter() {
+            self.covers[pixel].add(Cover {
+                sight,
+                distance_m: distances_m.0[pixel],
+                share: shares.0[pixel],
+            });
+            self.limits_m.0[pixel] = self.covers[pixel].limit_m();
+        }
+    }
+
+    /// Adds what is in a box that is too small for these pixels: `ball` fills it.
+    #[inline(always)]
+    pub(super) fn add_haze(&mut self, haze: &'a Haze, ball: &Solid, rays: &Rays, of: Subset) {
+        if let Some((touches, met)) = ball.touch_as_ball(rays, self.limits_m) {
+            let shares = touches.shares(Eight::all(0.0)) * haze.cover;
+            self.add(Sight::Haze(haze), met & of, touches.distance_m, shares);
+        }
     }
 }
 
@@ -125,7 +213,7 @@ mod tests {
         }
     }
 
-    fn distances(covers: &Covers<'_>) -> Vec<f32> {
+    fn distances(covers: &Covers<'_>) -> std::vec::Vec<f32> {
         covers.iter().map(|cover| cover.distance_m).collect()
     }
 
@@ -155,7 +243,7 @@ mod tests {
         for index in (0..2 * KEPT).rev() {
             covers.add(cover(1.0 + index as f32, 0.01));
         }
-        let nearest: Vec<f32> = (0..KEPT).map(|index| 1.0 + index as f32).collect();
+        let nearest: std::vec::Vec<f32> = (0..KEPT).map(|index| 1.0 + index as f32).collect();
         assert_eq!(distances(&covers), nearest);
         assert!(!covers.closed());
     }

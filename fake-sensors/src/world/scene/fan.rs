@@ -8,9 +8,10 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::ray::Aperture;
 use super::surface::{Hit, SeenSurface, footprint_m};
+use crate::vectors::eight::{Eight, LANES};
 
 /// Rays in a fan.
-pub const FAN: usize = 8;
+pub const FAN: usize = LANES;
 
 /// No surface.
 const NONE: u32 = u32::MAX;
@@ -50,6 +51,12 @@ impl Directions {
     #[inline(always)]
     pub(super) fn get(&self, ray: usize) -> Vector3<f32> {
         Vector3::new(self.x[ray], self.y[ray], self.z[ray])
+    }
+
+    /// The components of all of them along x, y and z.
+    #[inline(always)]
+    pub(super) fn components(&self) -> [Eight; 3] {
+        [Eight(self.x), Eight(self.y), Eight(self.z)]
     }
 
     /// The component of each along an axis.
@@ -96,7 +103,13 @@ impl<'d> Fan<'d> {
     pub fn hit<'a>(&self, ray: usize, surfaces: &[SeenSurface<'a>]) -> Option<Hit<'a>> {
         let surface = surfaces.get(self.surface[ray] as usize)?;
         let place_m = (self.u_m[ray], self.v_m[ray]);
-        Some(surface.hit_at(self.distance_m[ray], place_m, self.cos_incidence[ray]))
+        Some(surface.hit_at(self.distance_m[ray], place_m))
+    }
+
+    /// How far away what each ray has met is; infinitely, if that is nothing.
+    #[inline(always)]
+    pub fn distances_m(&self) -> Eight {
+        Eight(self.distance_m)
     }
 
     /// How far a pixel reaches over the surface that its ray has met, in metres.

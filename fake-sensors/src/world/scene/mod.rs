@@ -8,6 +8,8 @@ pub mod light;
 pub mod motion;
 pub mod panorama;
 pub mod ray;
+#[cfg(test)]
+pub mod simple;
 pub mod sky;
 pub mod solid;
 pub mod surface;
@@ -17,17 +19,19 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::paint::Tile;
+use crate::vectors::eight::{Eight, Subset};
+use crate::vectors::{self, Kernel};
 use bvh::Bvh;
-use cover::{Cover, Covers, Sight};
+use cover::{Cover, Covers, Pixels, Sight};
 use fan::{Directions, FAN, Fan};
 use haze::Haze;
 use light::Curve;
 use motion::Path;
 use panorama::Panorama;
-use ray::{Aperture, Ray};
+use ray::{Aperture, Ray, Rays};
 use sky::Sky;
-use solid::{Form, Solid, Touch};
-use surface::{Hit, SeenSurface, Surface};
+use solid::{Form, Solid};
+use surface::{SeenSurface, Surface};
 
 /// Lights of a world at most, with the one that never changes.
 pub const MAX_LIGHTS: usize = 8;
@@ -167,12 +171,19 @@ impl Mover {
 }
 
 impl Moved {
-    /// Whether the widening ray passes through the ball round the thing.
-    fn is_near(&self, ray: &Ray) -> bool {
-        let to_centre = self.centre - ray.origin;
-        let ahead_m = to_centre.dot(&ray.direction).max(0.0);
-        let reach_m = self.radius_m + ahead_m * ray.half_across.max(ray.half_up);
-        (to_centre - ray.direction * ahead_m).norm_squared() <= reach_m * reach_m
+    /// Which of the widening rays pass through the ball round the thing.
+    #[inline(always)]
+    fn near(&self, rays: &Rays) -> Subset {
+        let to_centre = self.centre - rays.origin;
+        let [x, y, z] = rays.direction;
+        let along_m = x * to_centre.x + y * to_centre.y + z * to_centre.z;
+        let ahead_m = along_m.max(Eight::all(0.0));
+        let reach_m = ahead_m * rays.half_across.max(rays.half_up) + self.radius_m;
+        let aside_m = [0, 1, 2]
+            .map(|axis| Eight::all(to_centre[axis]) - rays.direction[axis] * ahead_m)
+            .map(|aside_m| aside_m * aside_m);
+        let beside = (aside_m[0] + aside_m[1] + aside_m[2]).above(reach_m * reach_m);
+        Subset::ALL.without(beside.yes())
     }
 }
 
@@ -181,86 +192,83 @@ impl Viewpoint<'_> {
     /// light.
     #[must_use]
     pub fn radiance(&self, direction: Vector3<f32>, aperture: &Aperture) -> f32 {
-        self.radiance_of(self.first_hit(&direction), direction, aperture)
+        let directions = Directions::new(&[direction; FAN]);
+        self.radiances(&directions, &[*aperture; FAN], 1, &mut Pixels::none())[0]
     }
 
-    /// [`Self::radiance`] of the first `count` of several directions, which is quicker than one by one.
+    /// [`Self::radiance`] of the first `count` of several directions, which is quicker than one by one;
+    /// what is in `pixels` before does not matter.
     #[must_use]
     #[inline(always)]
-    pub fn radiances(
-        &self,
+    pub fn radiances<'v>(
+        &'v self,
         directions: &Directions,
         apertures: &[Aperture; FAN],
         count: usize,
+        pixels: &mut Pixels<'v>,
     ) -> [f32; FAN] {
         let fan = Fan::first_hits(directions, &self.surfaces);
-        let mut radiances = [0.0; FAN];
-        if self.holds_solids() {
-            for ray in 0..count.min(FAN) {
-                let hit = fan.hit(ray, &self.surfaces);
-                radiances[ray] = self.radiance_of(hit, directions.get(ray), &apertures[ray]);
-            }
-            return radiances;
-        }
         let footprints_m = fan.footprints_m(apertures);
-        for ray in 0..count.min(FAN) {
-            radiances[ray] = match fan.hit(ray, &self.surfaces) {
-                Some(hit) => hit.radiance_over(footprints_m[ray]) * self.levels[hit.light()],
-                None => self.dome(&directions.get(ray), apertures[ray].mean_rad()),
-            };
+        let all = Subset::first(count);
+        let solid = self.holds_solids();
+        let rays = Rays::new(self.position_m, directions, apertures);
+        if solid {
+            pixels.begin(fan.distances_m(), all);
+            self.cover(&rays, pixels);
+        }
+        let mut radiances = [0.0; FAN];
+        for ray in all.iter() {
+            let (mut light, mut through) = (0.0, 1.0);
+            if solid {
+                (light, through) = self.blend(&rays.get(ray), pixels.covers(ray));
+            }
+            if through > 0.0 {
+                let behind = match fan.hit(ray, &self.surfaces) {
+                    Some(hit) => hit.radiance_over(footprints_m[ray]) * self.levels[hit.light()],
+                    None => self.dome(&directions.get(ray), apertures[ray].mean_rad()),
+                };
+                light += through * behind;
+            }
+            radiances[ray] = light;
         }
         radiances
     }
 
-    /// Radiance from unit `direction`, where `hit` is the first surface.
-    #[inline(never)]
-    fn radiance_of(
-        &self,
-        hit: Option<Hit<'_>>,
-        direction: Vector3<f32>,
-        aperture: &Aperture,
-    ) -> f32 {
-        let limit_m = hit.as_ref().map_or(f32::INFINITY, |hit| hit.distance_m);
-        if !self.holds_solids() {
-            return self.behind(hit.as_ref(), &direction, aperture);
-        }
-        let ray = Ray::new(self.position_m, direction, aperture);
-        let covers = self.covers(&ray, limit_m);
+    /// Radiance of what covers a pixel, and how much of what is behind it shows.
+    #[inline(always)]
+    fn blend(&self, ray: &Ray, covers: &Covers<'_>) -> (f32, f32) {
         let (mut through, mut light) = (1.0, 0.0);
         for cover in covers.iter() {
-            light += through * cover.share * self.shade(&ray, cover);
+            light += through * cover.share * self.shade(ray, cover);
             through *= 1.0 - cover.share;
         }
         if covers.closed() {
             // Nothing behind is seen; what little was left is shared out.
-            return light / (1.0 - through);
+            return (light / (1.0 - through), 0.0);
         }
-        light + through * self.behind(hit.as_ref(), &direction, aperture)
+        (light, through)
     }
 
+    #[inline(always)]
     fn holds_solids(&self) -> bool {
         !self.moved.is_empty() || !self.scene.solids.is_empty()
-    }
-
-    /// Radiance of the surface or the sky behind all solids.
-    fn behind(&self, hit: Option<&Hit<'_>>, way: &Vector3<f32>, aperture: &Aperture) -> f32 {
-        match hit {
-            Some(hit) => hit.radiance(aperture.mean_rad()) * self.levels[hit.light()],
-            None => self.dome(way, aperture.mean_rad()),
-        }
     }
 
     /// Metres to the nearest surface or solid in unit `direction`; `None` where there is none.
     #[must_use]
     pub fn distance_m(&self, direction: Vector3<f32>) -> Option<f32> {
-        let hit = self.first_hit(&direction);
-        let limit_m = hit.as_ref().map_or(f32::INFINITY, |hit| hit.distance_m);
-        let ray = Ray::new(self.position_m, direction, &Aperture::POINT);
-        let covers = self.covers(&ray, limit_m);
-        let solid = covers.iter().find(|cover| cover.share >= 0.5);
+        let directions = Directions::new(&[direction; FAN]);
+        let fan = Fan::first_hits(&directions, &self.surfaces);
+        let rays = Rays::new(self.position_m, &directions, &[Aperture::POINT; FAN]);
+        let mut pixels = Pixels::none();
+        pixels.begin(fan.distances_m(), Subset::only(0));
+        self.cover(&rays, &mut pixels);
+        let mut covers = pixels.covers(0).iter();
+        let solid = covers.find(|cover| cover.share >= 0.5);
+        let surface = fan.hit(0, &self.surfaces);
         solid
             .map(|cover| cover.distance_m)
-            .or(hit.map(|hit| hit.distance_m))
+            .or(surface.map(|hit| hit.distance_m))
     }
 
     /// Whether something is seen in unit `direction`, be it the sky.
@@ -269,57 +277,56 @@ impl Viewpoint<'_> {
         !matches!(self.scene.dome, Dome::Nothing) || self.distance_m(direction).is_some()
     }
 
-    fn first_hit(&self, direction: &Vector3<f32>) -> Option<Hit<'_>> {
-        let directions = Directions::new(&[*direction; FAN]);
-        Fan::first_hits(&directions, &self.surfaces).hit(0, &self.surfaces)
-    }
-
-    fn covers(&self, ray: &Ray, limit_m: f32) -> Covers<'_> {
-        let mut covers = Covers::before(limit_m);
-        for moved in &self.moved {
-            if moved.is_near(ray) {
-                for solid in &moved.solids {
-                    self.offer(ray, solid, &mut covers);
-                }
-            }
-        }
-        self.scene.solids.visit(ray, &mut covers, |solid, covers| {
-            self.offer(ray, solid, covers)
+    /// Adds to the pixels of a fan what covers them.
+    fn cover<'v>(&'v self, rays: &Rays, pixels: &mut Pixels<'v>) {
+        vectors::run(Covering {
+            viewpoint: self,
+            rays,
+            pixels,
         });
-        covers
     }
 
-    fn offer<'a>(&'a self, ray: &Ray, solid: &'a Solid, covers: &mut Covers<'a>) {
-        let Some(touch) = solid.touch(ray, covers.limit_m()) else {
+    #[inline(always)]
+    fn offer<'a>(&'a self, rays: &Rays, of: Subset, solid: &'a Solid, pixels: &mut Pixels<'a>) {
+        let Some((touches, met)) = solid.touch(rays, pixels.limits_m()) else {
             return;
         };
-        let reach_m = solid.ragged * touch.reach_m;
-        // Bulges smaller than a pixel do not show, nor do those beside it.
-        let visible = 1.0 - touch.half_width_m / touch.reach_m;
-        let edge = touch.depth_m - touch.half_width_m < reach_m;
-        let shift_m = if reach_m > 0.0 && visible > 0.0 && edge {
-            visible * reach_m * self.bulge(ray, solid, &touch)
-        } else {
-            0.0
-        };
-        let share = touch.share(shift_m);
-        covers.add(Cover {
-            sight: Sight::Solid(solid),
-            distance_m: touch.distance_m,
-            share,
-        });
+        let met = met & of;
+        if met.is_empty() {
+            return;
+        }
+        let mut shifts_m = Eight::all(0.0);
+        if solid.ragged > 0.0 {
+            let reach_m = touches.reach_m * solid.ragged;
+            // Bulges smaller than a pixel do not show, nor do those beside it.
+            let visible = Eight::all(1.0) - touches.half_width_m / touches.reach_m;
+            let edge = (touches.depth_m - touches.half_width_m).below(reach_m);
+            let none = Eight::all(0.0);
+            let bulges = met & (reach_m.above(none) & visible.above(none) & edge).yes();
+            let most_m = visible * reach_m;
+            for ray in bulges.iter() {
+                let (distance_m, half_width_m) =
+                    (touches.distance_m.0[ray], touches.half_width_m.0[ray]);
+                let point = rays.get(ray).at(distance_m);
+                shifts_m.0[ray] = most_m.0[ray] * self.bulge(solid, &point, 2.0 * half_width_m);
+            }
+        }
+        let shares = touches.shares(shifts_m);
+        pixels.add(Sight::Solid(solid), met, touches.distance_m, shares);
     }
 
     /// How far a ragged outline lies outside (to 1) or inside (to -1) of the solid's own where the
     /// ray passes: foliage bulges where it is light.
-    fn bulge(&self, ray: &Ray, solid: &Solid, touch: &Touch) -> f32 {
+    #[inline(always)]
+    fn bulge(&self, solid: &Solid, point: &Vector3<f32>, footprint_m: f32) -> f32 {
         let tile = &self.scene.materials[usize::from(solid.material)].tile;
-        let (u, v) = on_tile(solid, &ray.at(touch.distance_m));
-        let light = tile.sample(u, v, 2.0 * touch.half_width_m) / tile.mean();
+        let (u, v) = on_tile(solid, point);
+        let light = tile.sample(u, v, footprint_m) / tile.mean();
         (light - 1.0).clamp(-1.0, 1.0)
     }
 
     /// Radiance of what covers a part of a pixel.
+    #[inline(always)]
     fn shade(&self, ray: &Ray, cover: &Cover<'_>) -> f32 {
         match cover.sight {
             Sight::Solid(solid) => self.shade_solid(ray, solid, cover.distance_m),
@@ -327,6 +334,7 @@ impl Viewpoint<'_> {
         }
     }
 
+    #[inline(always)]
     fn shade_solid(&self, ray: &Ray, solid: &Solid, distance_m: f32) -> f32 {
         let material = &self.scene.materials[usize::from(solid.material)];
         let level = material.gain * self.levels[usize::from(material.light)];
@@ -344,6 +352,7 @@ impl Viewpoint<'_> {
 
     /// Light on the visible half of a ball: its mean over the disc. The sun's part is a parabola
     /// through Lambert's sphere at full, half and new phase (2/3, 2/(3 pi), 0).
+    #[inline(always)]
     fn shade_haze(&self, ray: &Ray, haze: &Haze) -> f32 {
         let phase = -ray.direction.dot(&self.sunlight_towards());
         let facing = 0.212 + phase * (0.333 + phase * 0.121);
@@ -352,6 +361,7 @@ impl Viewpoint<'_> {
     }
 
     /// Light on a face that sees the sun under a cosine of `facing` and looks up by `upward`.
+    #[inline(always)]
     fn light_on(&self, facing: f32, upward: f32) -> f32 {
         let above = FROM_BELOW + (1.0 - FROM_BELOW) * (0.5 + 0.5 * upward);
         match &self.scene.sunlight {
@@ -360,6 +370,7 @@ impl Viewpoint<'_> {
         }
     }
 
+    #[inline(always)]
     fn sunlight_towards(&self) -> Vector3<f32> {
         let sun = self.scene.sunlight.as_ref();
         sun.map_or_else(Vector3::zeros, |sun| sun.towards)
@@ -378,8 +389,47 @@ impl Viewpoint<'_> {
     }
 }
 
+/// Adds to the pixels of a fan what covers them: what moves, then what stands.
+struct Covering<'c, 'v> {
+    viewpoint: &'v Viewpoint<'v>,
+    rays: &'c Rays,
+    pixels: &'c mut Pixels<'v>,
+}
+
+impl Kernel for Covering<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self {
+            viewpoint,
+            rays,
+            pixels,
+        } = self;
+        let all = pixels.all();
+        let mut moved = viewpoint.moved.iter();
+        let mut walk = viewpoint.scene.solids.walk(all);
+        loop {
+            let (solids, of) = if let Some(moved) = moved.next() {
+                (moved.solids.as_slice(), all & moved.near(rays))
+            } else if let Some(next) = walk.next(rays, pixels) {
+                next
+            } else {
+                return;
+            };
+            if of.is_empty() {
+                continue;
+            }
+            for solid in solids {
+                viewpoint.offer(rays, of, solid, pixels);
+            }
+        }
+    }
+}
+
 /// Where on its material's tile a point of a solid lies: seen along that of the solid's axes which
 /// its face is turned to most. Furrows run straight up.
+#[inline(always)]
 fn on_tile(solid: &Solid, point: &Vector3<f32>) -> (f32, f32) {
     let out = point - solid.centre;
     let [x, y] = match solid.form {

@@ -54,8 +54,6 @@ pub struct Hit<'a> {
     pub distance_m: f32,
     u_m: f32,
     v_m: f32,
-    /// Cosine between the ray and the surface's normal.
-    cos_incidence: f32,
 }
 
 impl Surface {
@@ -126,24 +124,18 @@ impl<'a> SeenSurface<'a> {
     }
 
     /// A ray that meets the surface at `(u_m, v_m)`.
-    pub fn hit_at(&self, distance_m: f32, (u_m, v_m): (f32, f32), cos_incidence: f32) -> Hit<'a> {
+    pub fn hit_at(&self, distance_m: f32, (u_m, v_m): (f32, f32)) -> Hit<'a> {
         Hit {
             surface: self.surface,
             distance_m,
             u_m,
             v_m,
-            cos_incidence,
         }
     }
 }
 
 impl Hit<'_> {
-    /// Radiance towards a pixel that is `width_rad` wide.
-    pub fn radiance(&self, width_rad: f32) -> f32 {
-        self.radiance_over(footprint_m(self.distance_m, width_rad, self.cos_incidence))
-    }
-
-    /// The skin, averaged over a footprint.
+    /// Radiance of the skin, averaged over a footprint.
     #[inline(always)]
     pub fn radiance_over(&self, footprint_m: f32) -> f32 {
         let (u_m, v_m) = (self.u_m, self.v_m);

@@ -101,5 +101,6 @@ fn no_ray_slips_out_between_walls() {
 }
 
 mod descriptions;
+mod fans;
 mod library;
 mod seeing;

@@ -3,6 +3,8 @@
 //! The same operations on more numbers at once: no multiplication is fused with an addition, so the
 //! results are those of every other machine, to the bit.
 
+pub mod eight;
+
 /// An inner loop. Whatever `run` calls must be inlined into it, or it is compiled for any processor.
 pub trait Kernel {
     /// What it gives.
@@ -20,6 +22,11 @@ pub fn run<K: Kernel>(kernel: K) -> K::Output {
         // SAFETY: the processor has AVX2.
         return unsafe { run_on_eight(kernel) };
     }
+    run_on_any(kernel)
+}
+
+#[inline(never)]
+fn run_on_any<K: Kernel>(kernel: K) -> K::Output {
     kernel.run()
 }
 
