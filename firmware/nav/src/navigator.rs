@@ -2,6 +2,22 @@
 //!
 //! On the way out it records the route; on the way back it follows the stored odometry to each
 //! snapshot, homes there by sight, realigns the pose and goes on (paper, Fig. 2C).
+//!
+//! The route is used up on the way back. A command begins with what is left of it:
+//!
+//! | command | the drone is | what is done |
+//! |---|---|---|
+//! | record | anywhere | the straight way from the route's end to the drone is stored, a snapshot is taken, and recording goes on |
+//! | record | at home, the route is used up | a new route begins; without Clear none does before |
+//! | follow | at the route's end, or on its way there | it is led home |
+//! | follow | beside the route, up to 2 m away | the route beyond the nearest point is forgotten; from there it is led home |
+//! | follow | farther away | it is told to stay where it is, and the route is kept |
+//! | follow and stay | anywhere | it is led to the last snapshot; the route is kept |
+//! | idle | anywhere | nothing is said any more: the autopilot holds the last set-point, and may land |
+//!
+//! Nothing on the link makes an autopilot land. A drone that is lost holds its position, and the MAP that is said
+//! once a second from then on tells what is left of the route. What becomes of a way that is longer than the
+//! memory stands at the head of `recorder`.
 
 mod follower;
 mod homing_run;
@@ -181,6 +197,7 @@ impl Navigator {
 }
 
 /// The route's end, with the last snapshot where that is news.
+#[inline(never)] // Many ask for it, and seldom: flash counts more than cycles here.
 fn map_entry(route: &Route, snapshot: Option<Snapshot>) -> MapEntry {
     // Both stacks hold fewer than 65536 entries.
     let index = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);

@@ -3,6 +3,7 @@
 //! A snapshot knows how many odometry vectors lay below it when it was taken; its position is their
 //! sum. Following the route pops both stacks until they are empty: the way back needs no search.
 
+mod entry;
 mod simplify;
 mod snapshots;
 mod vector;
@@ -48,6 +49,8 @@ pub struct Route {
     snapshots: SnapshotStack,
     /// The sum of all vectors, counts of 0.1 m.
     tip: [i32; 2],
+    /// The vector that was taken off last: from the tip to where the drone set out for it.
+    popped: OdometryVector,
 }
 
 impl Route {
@@ -58,6 +61,7 @@ impl Route {
             vectors: Vec::new(),
             snapshots: SnapshotStack::new(SnapshotFormat::Paper),
             tip: [0; 2],
+            popped: OdometryVector { x: 0, y: 0 },
         }
     }
 
@@ -66,6 +70,7 @@ impl Route {
         self.vectors.clear();
         self.snapshots.clear();
         self.tip = [0; 2];
+        self.popped = OdometryVector::default();
     }
 
     /// Whether both stacks are empty.
@@ -80,6 +85,7 @@ impl Route {
             self.snapshots.adopt(format);
             self.origin = origin;
             self.tip = [0; 2];
+            self.popped = OdometryVector::default();
         }
     }
 
@@ -107,6 +113,7 @@ impl Route {
             self.vectors.push(vector).map_err(|_| RouteFull)?;
         }
         self.tip = new_tip;
+        self.popped = OdometryVector::default();
         Ok(())
     }
 
@@ -128,11 +135,25 @@ impl Route {
         self.snapshots.push(view, self.height())
     }
 
+    /// Makes room for snapshots: drops every second one that odometry leads to and on from. The way stays as it
+    /// is. Says whether there is room now.
+    pub(crate) fn thin_out(&mut self) -> bool {
+        self.snapshots.thin_out()
+    }
+
+    /// Makes room for vectors: simplifies the way since the last snapshot. Says whether there is room now.
+    pub(crate) fn straighten(&mut self, tolerance_m: f32) -> bool {
+        let before = self.vectors.len();
+        self.simplify_last_part(tolerance_m);
+        self.vectors.len() < before
+    }
+
     /// Takes the last vector off; the tip moves back by it.
     pub fn pop_vector(&mut self) -> Option<OdometryVector> {
         let vector = self.vectors.pop()?;
         self.tip[0] -= i32::from(vector.x);
         self.tip[1] -= i32::from(vector.y);
+        self.popped = vector;
         Some(vector)
     }
 
@@ -148,16 +169,16 @@ impl Route {
 
     /// Whether the last snapshot was taken at the tip.
     pub fn has_snapshot_at_tip(&self) -> bool {
-        self.top_snapshot()
-            .is_some_and(|top| usize::from(top.height) >= self.vectors.len())
+        self.snapshots
+            .top_height()
+            .is_some_and(|height| usize::from(height) >= self.vectors.len())
     }
 
     /// Whether no odometry leads from the snapshot before (or from the beginning) to the last one.
     pub fn top_is_visual_only(&self) -> bool {
-        let mut from_top = self.snapshots.iter().rev();
-        let height = from_top.next().map_or(0, |top| top.height);
-        let below = from_top.next().map_or(0, |snapshot| snapshot.height);
-        height == below
+        let before = self.snapshots.len().checked_sub(2);
+        let below = before.and_then(|index| self.snapshots.height(index));
+        self.snapshots.top_height().unwrap_or(0) == below.unwrap_or(0)
     }
 
     /// Whether the vectors tell where the last snapshot was taken: not for a later one of a purely
@@ -168,7 +189,7 @@ impl Route {
 
     /// Where the vectors below the last snapshot lead to.
     pub fn top_snapshot_position(&self) -> Option<Point2<f32>> {
-        let height = usize::from(self.top_snapshot()?.height);
+        let height = usize::from(self.snapshots.top_height()?);
         let mut position = self.tip;
         for vector in self.vectors.iter().skip(height) {
             position[0] -= i32::from(vector.x);
@@ -203,7 +224,7 @@ impl Route {
     }
 
     fn simplify_last_part(&mut self, tolerance_m: f32) {
-        let start = self.top_snapshot().map_or(0, |top| usize::from(top.height));
+        let start = self.snapshots.top_height().map_or(0, usize::from);
         let Some(part) = self.vectors.get_mut(start..) else {
             return;
         };

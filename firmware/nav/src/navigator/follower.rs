@@ -1,6 +1,7 @@
 //! The way back: popping the stacks, leg by leg.
 
 mod arrival;
+mod entry;
 pub(super) mod search;
 
 use nalgebra::Point2;
@@ -32,8 +33,8 @@ pub(super) struct Follower {
 
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    /// Before the first step.
-    Starting,
+    /// Before the first step after a command or, where the drone is known to be `on_its_way`, after a gap.
+    Starting { on_its_way: bool },
     /// By odometry towards the route's tip.
     Leg { since_ms: u32 },
     /// At the last snapshot. `done`: it has been reached, and the drone stays.
@@ -70,7 +71,7 @@ impl Follower {
     pub(super) const fn new(stays: bool) -> Self {
         Self {
             stays,
-            phase: Phase::Starting,
+            phase: Phase::Starting { on_its_way: false },
             searched: false,
             other_places: 0,
             unseen_m: 0.0,
@@ -79,15 +80,15 @@ impl Follower {
     }
 
     pub(super) fn resume(&mut self) {
-        if !matches!(self.phase, Phase::Holding { .. }) {
-            self.phase = Phase::Starting;
+        if !matches!(self.phase, Phase::Holding { .. } | Phase::Starting { .. }) {
+            self.phase = Phase::Starting { on_its_way: true };
             self.heading_is_known = false;
         }
     }
 
     pub(super) fn step(&mut self, context: &mut Context, step: &mut Step) {
         match self.phase {
-            Phase::Starting => self.start(context, step),
+            Phase::Starting { on_its_way } => self.start(on_its_way, context, step),
             Phase::Settling {
                 since_ms,
                 correction,
@@ -115,7 +116,7 @@ impl Follower {
         step.vector = Some(self.set_point(context, step));
     }
 
-    fn start(&mut self, context: &mut Context, step: &mut Step) {
+    fn start(&mut self, on_its_way: bool, context: &mut Context, step: &mut Step) {
         let here = context.pose.position;
         if context.route.is_empty() || (self.stays && context.route.snapshots().is_empty()) {
             step.report(Event::RouteEmpty);
@@ -127,8 +128,10 @@ impl Follower {
             // It may be far away, and the camera leads; odometry is what is left in the dark.
             let fallback = arrival::recorded_position(context.route).unwrap_or(here);
             self.start_homing(here, fallback, context, step);
-        } else {
+        } else if on_its_way || entry::enter(context) {
             self.start_next(here, context, step);
+        } else {
+            self.stop(here, context, step);
         }
     }
 
@@ -254,7 +257,7 @@ impl Follower {
                 correction.to.position
             }
             Phase::Holding { at, .. } => at,
-            Phase::Leg { .. } | Phase::Starting => context.route.tip(),
+            Phase::Leg { .. } | Phase::Starting { .. } => context.route.tip(),
         };
         by_odometry(target, context.pose)
     }

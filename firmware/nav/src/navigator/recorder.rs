@@ -1,4 +1,11 @@
-//! The way out: pushing odometry vectors and snapshots.
+//! The way out: pushing odometry vectors and snapshots, as long as there is room and beyond.
+//!
+//! | what is full | what is done |
+//! |---|---|
+//! | snapshots | every second is dropped, and from now on they are twice as far apart: up to 10 m |
+//! | snapshots that are that far apart, or spaced by theory | no more of them are taken: odometry goes on alone |
+//! | vectors | the way since the last snapshot is simplified |
+//! | vectors of a way that is simple already, or a visual sequence | recording ends |
 
 use nalgebra::Point2;
 
@@ -25,6 +32,8 @@ pub(super) struct Recorder {
     catchment_m: f32,
     /// A snapshot is to be taken of the next view.
     snapshot_due: bool,
+    /// How often the route was thinned out: so often is the way between snapshots doubled.
+    thinned: u8,
     stopped: bool,
 }
 
@@ -38,6 +47,7 @@ impl Recorder {
             catchment_m: 0.0,
             // The first snapshot is taken where recording starts.
             snapshot_due: what.snapshots,
+            thinned: 0,
             stopped: false,
         }
     }
@@ -71,14 +81,45 @@ impl Recorder {
             route.begin(position, parameters.snapshot_format);
         }
         if self.what.odometry && (position - route.tip()).norm() >= VECTOR_SPACING_M {
-            route.extend_to(position)?;
+            extend(parameters, route, position)?;
             step.map = Some(super::map_entry(route, None));
         }
         self.measure(parameters, now_ms, position);
-        match view.filter(|view| self.snapshot_due && view.is_finite()) {
-            Some(view) => self.take_snapshot(parameters, route, (now_ms, position), view, step),
-            None => Ok(()),
+        let Some(view) = view.filter(|view| self.snapshot_due && view.is_finite()) else {
+            return Ok(());
+        };
+        if route.snapshots().is_full() && !self.make_room(parameters, route, step) {
+            if !self.what.odometry {
+                return Err(RouteFull);
+            }
+            self.what.snapshots = false;
+            self.snapshot_due = false;
+            step.report(Event::SnapshotsFull);
+            return Ok(());
         }
+        self.take_snapshot(parameters, route, (now_ms, position), view, step)
+    }
+
+    /// Whether there is room for another snapshot now: half as many lead home along the same way, as long as
+    /// they are no farther apart than theory ever lets them be.
+    fn make_room(&mut self, parameters: &Parameters, route: &mut Route, step: &mut Step) -> bool {
+        let (_, most_m) = THEORY_M;
+        let is_dense = !parameters.spacing_by_theory && 2.0 * self.spacing_m(parameters) <= most_m;
+        if !(is_dense && self.what.odometry && route.thin_out()) {
+            return false;
+        }
+        self.thinned += 1;
+        let entry = super::map_entry(route, None);
+        step.report(Event::ThinnedOut {
+            last: entry.snapshot_index,
+        });
+        true
+    }
+
+    /// The way between two snapshots along odometry, where it is fixed, metres.
+    fn spacing_m(&self, parameters: &Parameters) -> f32 {
+        let doubled = 1_u8.checked_shl(self.thinned.into()).unwrap_or(u8::MAX);
+        parameters.snapshot_spacing_m * f32::from(doubled)
     }
 
     /// Measures the way since the last snapshot, and decides whether the next is due.
@@ -96,7 +137,7 @@ impl Recorder {
         } else if parameters.spacing_by_theory {
             self.may_drift_away(parameters, now_ms, way_m)
         } else {
-            way_m >= parameters.snapshot_spacing_m
+            way_m >= self.spacing_m(parameters)
         };
         if self.what.repeats_snapshots() && is_far {
             self.snapshot_due = true;
@@ -123,7 +164,7 @@ impl Recorder {
     ) -> Result<(), RouteFull> {
         if self.what.odometry {
             // The vectors below a snapshot shall end where it is taken, not up to 0.3 m before.
-            route.extend_to(position)?;
+            extend(parameters, route, position)?;
         }
         let stored = route.push_snapshot(view, parameters.simplify_tolerance_m)?;
         self.snapshot_due = false;
@@ -141,5 +182,20 @@ impl Recorder {
         });
         step.map = Some(entry);
         Ok(())
+    }
+}
+
+/// Stores the way to `position`, and where there is no room for it makes some.
+#[inline(never)] // Flash counts more than cycles here.
+fn extend(
+    parameters: &Parameters,
+    route: &mut Route,
+    position: Point2<f32>,
+) -> Result<(), RouteFull> {
+    match route.extend_to(position) {
+        Err(RouteFull) if route.straighten(parameters.simplify_tolerance_m) => {
+            route.extend_to(position)
+        }
+        result => result,
     }
 }

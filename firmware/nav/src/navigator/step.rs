@@ -104,7 +104,16 @@ pub enum Event {
         /// Odometry vectors below it.
         height: u16,
     },
-    /// The route is full: recording has stopped, what is stored is whole.
+    /// There was no room for another snapshot: every second was dropped, and from now on they are twice as far
+    /// apart.
+    ThinnedOut {
+        /// Index of the last that is left, from zero.
+        last: u16,
+    },
+    /// There is no room for another snapshot: from now on odometry is recorded alone.
+    SnapshotsFull,
+    /// The route is full: recording has stopped, what is stored is whole. A drone that is told to follow it
+    /// from farther than 2 m beyond its end is lost.
     RouteFull,
     /// There is nothing to follow: holding the position.
     RouteEmpty,

@@ -1,5 +1,7 @@
 extern crate std;
 
+mod capacity;
+mod entry;
 mod lost;
 mod turns;
 
@@ -219,7 +221,7 @@ fn a_snapshot_waits_for_a_view_and_for_a_sound_one() {
 }
 
 #[test]
-fn a_full_route_stops_recording_and_says_so_once() {
+fn a_stack_of_snapshots_at_one_place_is_not_thinned_out_and_odometry_goes_on_alone() {
     let mut bench = Bench::new();
     for _ in 0..SNAPSHOT_CAPACITY {
         bench.record(0x01, 0.0);
@@ -228,7 +230,9 @@ fn a_full_route_stops_recording_and_says_so_once() {
     assert_eq!(bench.snapshots(), SNAPSHOT_CAPACITY);
     bench.record(0x03, 10.0);
     assert_eq!(bench.snapshots(), SNAPSHOT_CAPACITY);
-    assert_eq!(bench.count(|event| *event == Event::RouteFull), 1);
+    assert_eq!(bench.count(|event| *event == Event::SnapshotsFull), 1);
+    assert_eq!(bench.count(|event| *event == Event::RouteFull), 0);
+    assert!((bench.navigator.route().tip().x - 10.0).abs() < 0.4);
 }
 
 #[test]

@@ -56,7 +56,7 @@ impl SnapshotStack {
     }
 
     /// Whether there is no room for another.
-    pub(super) fn is_full(&self) -> bool {
+    pub fn is_full(&self) -> bool {
         self.bytes.capacity() - self.bytes.len() < self.stride()
     }
 
@@ -89,6 +89,52 @@ impl SnapshotStack {
         let last = self.last()?;
         self.bytes.truncate(self.bytes.len() - self.stride());
         Some(last)
+    }
+
+    /// Drops every second snapshot, as far as odometry leads to it and on from it, and never the first. Says
+    /// whether that has made room.
+    pub(super) fn thin_out(&mut self) -> bool {
+        let (stride, count) = (self.stride(), self.len());
+        let (mut written, mut keep) = (0, true);
+        let mut below = None;
+        for index in 0..count {
+            let height = self.height(index);
+            let is_on_the_way = below < height
+                && self
+                    .height(index + 1)
+                    .is_none_or(|above| Some(above) > height);
+            keep = !(keep && below.is_some() && is_on_the_way);
+            below = height;
+            if keep {
+                let start = index * stride;
+                self.bytes.copy_within(start..start + stride, written);
+                written += stride;
+            }
+        }
+        self.bytes.truncate(written);
+        written < count * stride
+    }
+
+    /// Vectors below one of the snapshots, counted from the oldest.
+    pub(super) fn height(&self, index: usize) -> Option<u16> {
+        let end = (index + 1) * self.stride();
+        let stored = self.bytes.get(..end)?.last_chunk()?;
+        Some(u16::from_le_bytes(*stored))
+    }
+
+    /// Vectors below the last snapshot.
+    pub(super) fn top_height(&self) -> Option<u16> {
+        Some(u16::from_le_bytes(*self.bytes.last_chunk()?))
+    }
+
+    /// Drops the last snapshots, as far as more vectors lie below them than that.
+    pub(super) fn drop_above(&mut self, height: usize) {
+        while self
+            .top_height()
+            .is_some_and(|top| usize::from(top) > height)
+        {
+            self.bytes.truncate(self.bytes.len() - self.stride());
+        }
     }
 
     pub(super) fn clear(&mut self) {

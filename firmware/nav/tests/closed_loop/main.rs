@@ -2,6 +2,7 @@
 
 mod drone;
 mod random;
+mod routes;
 mod world;
 
 use drone::Drone;
@@ -76,7 +77,12 @@ impl Flight {
 
     /// Lets the navigator lead until it has finished; panics if it does not within ten minutes.
     fn fly_home(&mut self) {
-        for _ in 0..6_000 {
+        self.fly_home_within(6_000);
+    }
+
+    /// The same within so many periods.
+    fn fly_home_within(&mut self, periods: usize) {
+        for _ in 0..periods {
             self.period(None);
             if self.events.contains(&Event::RouteFinished) {
                 return (0..20).for_each(|_| self.period(None));
