@@ -11,7 +11,7 @@ const START_M: f32 = 0.3;
 /// Starts round a snapshot.
 const STARTS: u8 = 8;
 /// What the vectors' unit is taken for, metres: the distance of things in a room.
-const SURROUNDINGS_M: f32 = 2.0;
+pub const SURROUNDINGS_M: f32 = 2.0;
 /// The part of a vector that one step covers, as the flight's smoothed set-point does.
 const GAIN: f32 = 0.3;
 /// Steps until a run is over: more than are needed to come to rest.

@@ -151,21 +151,27 @@ pub(super) fn by_its_north(current: &Current, way: &Homeward) -> [f32; 2] {
 /// The best settings of each task on the surveys, by the mean area within 0.5 m. `done` hears how many
 /// settings were tried.
 pub fn tune(surveys: &[&Survey], tasks: &[Task], done: impl FnMut(usize)) -> Vec<Settings> {
-    let tries: Vec<(usize, Settings)> = tasks
+    let candidates = |task: &Task| task.method.candidates(task.bytes, task.heading_deg);
+    let choices: Vec<Vec<Settings>> = tasks.iter().map(candidates).collect();
+    tune_among(surveys, &choices, done)
+}
+
+/// The best settings of each choice, as [`tune`] finds them; of a choice without any there are none.
+pub fn tune_among(
+    surveys: &[&Survey],
+    choices: &[Vec<Settings>],
+    done: impl FnMut(usize),
+) -> Vec<Settings> {
+    let tries: Vec<(usize, Settings)> = choices
         .iter()
         .enumerate()
-        .flat_map(|(index, task)| {
-            let candidates = task.method.candidates(task.bytes, task.heading_deg);
-            candidates
-                .into_iter()
-                .map(move |settings| (index, settings))
-        })
+        .flat_map(|(index, settings)| settings.iter().map(move |settings| (index, *settings)))
         .collect();
     let areas = parallel::map(
         &tries,
-        |(task, settings)| {
-            // What ships is not chosen here.
-            if tasks[*task].method == Method::Default {
+        |(choice, settings)| {
+            // Where there is nothing to choose, as of what ships.
+            if choices[*choice].len() == 1 {
                 return 0.0;
             }
             let means = surveys.iter().map(|survey| {
@@ -176,9 +182,9 @@ pub fn tune(surveys: &[&Survey], tasks: &[Task], done: impl FnMut(usize)) -> Vec
         },
         done,
     );
-    let mut best: Vec<Option<(f64, Settings)>> = vec![None; tasks.len()];
-    for ((task, settings), area) in tries.iter().zip(areas) {
-        let best = &mut best[*task];
+    let mut best: Vec<Option<(f64, Settings)>> = vec![None; choices.len()];
+    for ((choice, settings), area) in tries.iter().zip(areas) {
+        let best = &mut best[*choice];
         if best.is_none_or(|(largest, _)| area > largest) {
             *best = Some((area, *settings));
         }
@@ -311,7 +317,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 
 /// A line with a mean area and its standard error, for tests of what is made of lines.
 #[cfg(test)]
-pub(super) fn row_of(
+pub(crate) fn row_of(
     world: &str,
     method: Method,
     bytes: u8,

@@ -24,7 +24,7 @@ pub mod settings;
 pub mod survey;
 
 pub use condition::Condition;
-pub use measure::{Area, Row, Task, evaluate, tune};
+pub use measure::{Area, Row, Task, evaluate, tune, tune_among};
 pub use place::{Named, Place, PlaceError};
 pub use settings::{Method, Settings};
 pub use survey::Survey;

@@ -1,22 +1,59 @@
 //! The paper's checkable claims beside what is measured here, one row each.
+//!
+//! | room | what it does |
+//! | --- | --- |
+//! | `claims` | the claims by number |
+//! | `computed` | what is measured without a scenario: board, odometry, Fig. 4, and the surveys of |
+//! | `catchments`, `scaling` | Fig. 3C, and rooms of half and double the size |
+//! | `rooms` | where they look round |
+//! | `moved_objects` | the home vector while something is moved (tables S1 to S4) |
+//! | `table` | the rows as documents have them |
 
+mod catchments;
 mod claims;
+mod computed;
 mod drift_model;
+mod moved_objects;
+mod rooms;
+mod scaling;
+pub mod table;
 
 use std::ops::RangeInclusive;
 
 use serde::Serialize;
 
+use crate::catchment::PlaceError;
+use crate::catchment::survey::Unsuited;
+use crate::flight::FlightError;
+use crate::image::BuildError;
 use crate::scenario::expectation::{Bounds, Verdict};
 use crate::scenario::file::ScenarioFile;
-use crate::sweep::Outcome;
+use crate::sweep::{FlightFigures, Outcome};
 
-pub use claims::{CHECKABLE, COMPUTED, Computed};
+pub use claims::CHECKABLE;
+pub use computed::{COMPUTED, Computed, Order};
+
+/// Something could not be measured.
+#[derive(Debug, thiserror::Error)]
+pub enum ExperimentError {
+    /// The checkout with the photographed room was not found.
+    #[error(transparent)]
+    Checkout(#[from] BuildError),
+    /// A place to look round in cannot be opened.
+    #[error(transparent)]
+    Place(#[from] PlaceError),
+    /// A place cannot be looked at under a condition.
+    #[error(transparent)]
+    Unsuited(#[from] Unsuited),
+    /// A run could not be flown.
+    #[error(transparent)]
+    Flight(#[from] FlightError),
+}
 
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Number of the paper's claim; none for what goes beyond it.
+    /// Number of the paper's claim; none for what goes beyond those.
     pub claim: Option<u8>,
     /// What is looked at.
     pub what: String,
@@ -24,10 +61,50 @@ pub struct Row {
     pub paper: String,
     /// The same here.
     pub ours: String,
-    /// Over how many seeds; zero where there is nothing random.
+    /// Over how many seeds, runs, views or snapshots; zero where there is nothing random.
     pub seeds: usize,
     /// Whether the claim holds here; none where it is not checked.
     pub kept: Option<bool>,
+    /// The same from a flight on the emulated board, where one was flown beside.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub emulated: Option<Emulated>,
+}
+
+/// One flight of a scenario on the emulated board, beside those of the native one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Emulated {
+    /// The figure.
+    pub ours: String,
+    /// Whether every figure of the flight is the native one's of the same seed, to the bit.
+    pub as_native: bool,
+}
+
+impl Row {
+    /// A row that is about no claim and checks none.
+    fn of(what: impl Into<String>, paper: impl Into<String>, ours: impl Into<String>) -> Self {
+        Self {
+            claim: None,
+            what: what.into(),
+            paper: paper.into(),
+            ours: ours.into(),
+            seeds: 0,
+            kept: None,
+            emulated: None,
+        }
+    }
+
+    /// The same about a claim.
+    fn about(self, claim: u8) -> Self {
+        Self {
+            claim: Some(claim),
+            ..self
+        }
+    }
+
+    /// Whether nothing about it is wrong: it holds or is not checked, and an emulated flight was the native one.
+    pub fn is_sound(&self) -> bool {
+        self.kept != Some(false) && self.emulated.as_ref().is_none_or(|beside| beside.as_native)
+    }
 }
 
 /// A row for every expectation of a scenario.
@@ -35,20 +112,39 @@ pub fn rows(file: &ScenarioFile, outcome: &Outcome) -> Vec<Row> {
     let row = |verdict: &Verdict| {
         let expectation = &verdict.expectation;
         let metric = expectation.metric;
+        let ours = format!(
+            "{} ({})",
+            metric.in_words(verdict.found),
+            limits(&expectation.bounds, |limit| metric.in_words(limit))
+        );
         Row {
             claim: expectation.claim,
-            what: format!("{}: {metric}", file.name),
-            paper: expectation.paper.clone().unwrap_or_default(),
-            ours: format!(
-                "{} ({})",
-                metric.in_words(verdict.found),
-                limits(&expectation.bounds, |limit| metric.in_words(limit))
-            ),
             seeds: outcome.statistics.flights,
             kept: Some(verdict.kept),
+            ..Row::of(
+                format!("{}: {metric}", file.name),
+                expectation.paper.clone().unwrap_or_default(),
+                ours,
+            )
         }
     };
     outcome.expectations.iter().map(row).collect()
+}
+
+/// Writes the flight of a seed on the emulated board beside the rows of a scenario; `native` is that of the same seed.
+pub fn beside(
+    rows: &mut [Row],
+    file: &ScenarioFile,
+    native: &FlightFigures,
+    emulated: &FlightFigures,
+) {
+    let outcome = Outcome::of(file, std::slice::from_ref(emulated));
+    for (row, verdict) in rows.iter_mut().zip(&outcome.expectations) {
+        row.emulated = Some(Emulated {
+            ours: verdict.expectation.metric.in_words(verdict.found),
+            as_native: native == emulated,
+        });
+    }
 }
 
 /// Bounds for people.
@@ -67,51 +163,10 @@ pub fn in_order(mut rows: Vec<Row>) -> Vec<Row> {
     rows
 }
 
-/// The rows as a table in Markdown.
-pub fn table(rows: &[Row]) -> String {
-    let cells = |row: &Row| {
-        [
-            row.claim.map_or("–".to_owned(), |claim| claim.to_string()),
-            row.what.clone(),
-            row.paper.clone(),
-            row.ours.clone(),
-            if row.seeds == 0 {
-                "–".to_owned()
-            } else {
-                row.seeds.to_string()
-            },
-            match row.kept {
-                Some(true) => "yes".to_owned(),
-                Some(false) => "NO".to_owned(),
-                None => "not checked".to_owned(),
-            },
-        ]
-    };
-    let heads = ["claim", "what", "paper", "here", "seeds", "kept"].map(str::to_owned);
-    let body: Vec<_> = rows.iter().map(cells).collect();
-    let width = |column: usize| {
-        let of = |line: &[String; 6]| line[column].chars().count();
-        body.iter().map(of).fold(of(&heads), usize::max)
-    };
-    let widths: [usize; 6] = core::array::from_fn(width);
-    let line = |cells: &[String; 6]| {
-        let padded = cells
-            .iter()
-            .zip(widths)
-            .map(|(cell, width)| format!("{cell:width$}"));
-        format!("| {} |", padded.collect::<Vec<_>>().join(" | "))
-    };
-    let rule = widths.map(|width| "-".repeat(width));
-    let lines: Vec<_> = [&heads, &rule].into_iter().chain(&body).map(line).collect();
-    lines.join("\n")
-}
-
-/// Claims of which no row says anything, by number.
-pub fn unanswered(rows: &[Row]) -> Vec<u8> {
+/// Claims that none of these numbers is about.
+pub fn unanswered(claims: &[u8]) -> Vec<u8> {
     let numbers = CHECKABLE.iter().map(|(number, _)| *number);
-    numbers
-        .filter(|number| rows.iter().all(|row| row.claim != Some(*number)))
-        .collect()
+    numbers.filter(|number| !claims.contains(number)).collect()
 }
 
 /// A row whose figure lies in a range.
@@ -123,11 +178,8 @@ fn measured(
     seeds: usize,
 ) -> Row {
     Row {
-        claim: Some(claim),
-        what: claims::what(claim).to_owned(),
-        paper: paper.to_owned(),
-        ours,
         seeds,
         kept: Some(accepted.contains(&figure)),
+        ..Row::of(claims::what(claim), paper, ours).about(claim)
     }
 }

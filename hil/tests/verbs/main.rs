@@ -5,5 +5,6 @@ mod calibrate;
 mod cfclient;
 mod command_line;
 mod data_verbs;
+mod experiments;
 mod import_cf;
 mod scenarios;

@@ -1,17 +1,15 @@
-//! The scenario library, and the verbs that fly it: fly, sweep, merge, replay, experiments.
+//! The scenario library, and the verbs that fly it: fly, sweep, merge, replay.
 
 use std::fs;
 use std::path::Path;
 use std::sync::OnceLock;
 
 use fake_sensors::world::World;
-use hil::experiments::{self, COMPUTED};
 use hil::flight::FlightError;
 use hil::parallel;
 use hil::scenario::file::{Backend, ScenarioFile};
 use hil::sweep::{FlightFigures, Outcome, Vessel, fly_each};
 use nalgebra::Vector2;
-use serde_json::Value;
 
 use super::bench::{Folder, hil, json, stderr};
 
@@ -127,24 +125,6 @@ fn every_way_of_a_kilometre_is_as_long_and_clear_of_what_stands_there() {
             }
         }
     }
-}
-
-#[test]
-fn every_claim_of_the_paper_has_a_row() {
-    let files = library();
-    let claimed = files.iter().flat_map(|file| &file.expectations);
-    let mut rows: Vec<_> = COMPUTED
-        .iter()
-        .flat_map(|computed| (computed.rows)(2))
-        .collect();
-    let Some(row) = rows.first().cloned() else {
-        panic!("nothing is computed");
-    };
-    rows.extend(claimed.map(|expectation| experiments::Row {
-        claim: expectation.claim,
-        ..row.clone()
-    }));
-    assert_eq!(experiments::unanswered(&rows), Vec::<u8>::new());
 }
 
 #[test]
@@ -279,29 +259,4 @@ fn a_file_is_flown_as_it_says_and_nothing_beside_it() {
         assert_eq!(output.status.code(), Some(2), "{option}");
         assert!(stderr(&output).contains("cannot be used with"), "{option}");
     }
-}
-
-#[test]
-fn experiments_print_a_row_for_each_claim_they_were_asked_for() {
-    let output = hil(&["experiments", "--only", "board", "--json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let table = json(&output);
-    let rows = table["rows"].as_array().expect("rows");
-    let claims: Vec<_> = rows.iter().map(|row| &row["claim"]).collect();
-    assert_eq!(claims, [1, 3]);
-    for name in ["what", "paper", "ours"] {
-        assert!(rows[0][name].is_string(), "{name}");
-    }
-    assert_eq!(
-        (&rows[0]["seeds"], &rows[0]["kept"]),
-        (&Value::from(0), &Value::from(true))
-    );
-
-    let output = hil(&["experiments", "--only", "moon"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(
-        stderr(&output).contains("drift-model"),
-        "{}",
-        stderr(&output)
-    );
 }
