@@ -2,6 +2,8 @@
 //!
 //!     cargo bench -p fake-sensors --bench render
 
+use std::path::Path;
+
 use criterion::{BenchmarkId, Criterion, Throughput};
 use fake_sensors::camera::{
     Exposure, FRAME_BYTES, HEIGHT, Moment, PanoramicCamera, PanoramicLens, Pose,
@@ -9,6 +11,8 @@ use fake_sensors::camera::{
 use fake_sensors::world::{WORLD_NAMES, World};
 use nalgebra::{UnitQuaternion, Vector3};
 
+/// Worlds of the long routes, beside those of the library.
+const LONG: [&str; 2] = ["building.toml", "greenhouse-rows.toml"];
 /// From the first row to the last at 25.64 frames a second.
 const READOUT_S: f64 = 0.035;
 /// Flight speed.
@@ -33,8 +37,12 @@ fn pose(time_s: f64) -> Pose {
 fn frame(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("frame");
     group.throughput(Throughput::Elements(1));
-    for name in WORLD_NAMES {
-        let world = World::named(name, 1).expect("a world of the library");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/worlds");
+    let library = WORLD_NAMES.map(|name| (name, World::named(name, 1)));
+    let library = library.map(|(name, world)| (name, world.expect("a world of the library")));
+    let long = LONG.map(|name| (name, World::from_file(&folder.join(name), 1)));
+    let long = long.map(|(name, world)| (name, world.expect("a world of the long routes")));
+    for (name, world) in library.into_iter().chain(long) {
         let mut camera = PanoramicCamera::new(world, &PanoramicLens::default(), 1);
         let mut number = 0;
         group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
