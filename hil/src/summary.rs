@@ -21,7 +21,8 @@ pub struct Summary {
     pub route: String,
     /// How it found back: `both`, `odometry` or `sequence`.
     pub homing: &'static str,
-    /// Snapshot spacing, metres; without meaning where `homing` is `odometry`.
+    /// Snapshot spacing, metres; not known where theory finds it, without meaning where `homing` is
+    /// `odometry`.
     pub spacing_m: f64,
     /// What the flight was up against.
     pub conditions: Conditions,

@@ -17,7 +17,9 @@ use crate::live::Stop;
 use crate::rig::file::Rig;
 use crate::rig::{BoardSetup, fly_board, probe};
 use crate::scenario::file::{self, ScenarioFile};
-use crate::scenario::{Deviation, Homing, Route, Scenario, SnapshotForm, Spacing, Storage};
+use crate::scenario::{
+    Deviation, Homing, NoSpacing, Route, Scenario, SnapshotForm, Spacing, Storage,
+};
 use crate::summary::{DirectionFigures, Summary};
 
 /// Share of late steps up to which a flight counts as one in real time.
@@ -55,7 +57,8 @@ pub struct ScenarioArguments {
     /// The world: a name that `hil look` lists, or a file
     #[arg(long, default_value = "arena-panels", value_parser = world::parse)]
     pub world: String,
-    /// Metres between snapshots, in steps of 0.1; a sequence has its own spacing, 0.25 m
+    /// Metres between snapshots, in steps of 0.1, or `auto`: as far as the drift of odometry allows; a
+    /// sequence has its own spacing, 0.25 m
     #[arg(long, default_value = "2", value_parser = parse_spacing, value_name = "METRES")]
     pub spacing: Spacing,
     /// How a snapshot is stored
@@ -91,11 +94,7 @@ impl ScenarioArguments {
 
 fn parse_spacing(text: &str) -> Result<Spacing, String> {
     text.parse()
-        .ok()
-        .and_then(Spacing::from_metres)
-        .ok_or_else(|| {
-            "a distance from 0.2 to 10 metres in steps of 0.1; the paper flies 1 or 2".to_owned()
-        })
+        .map_err(|wrong: NoSpacing| format!("{wrong}; the paper flies 1 or 2"))
 }
 
 fn parse_deviation(text: &str) -> Result<Deviation, String> {

@@ -16,8 +16,8 @@ pub struct Watch {
     mode: Option<u8>,
     /// What the newest route was recorded with.
     recorded: Option<u8>,
-    /// The first argument of the newest recording command, dm.
-    spacing_dm: Option<u8>,
+    /// What the first argument of the newest recording command asked for.
+    spacing: Option<Spacing>,
     /// What the last second argument asked for.
     snapshot_form: SnapshotForm,
     estimate: PlanarPose,
@@ -43,7 +43,8 @@ impl Watch {
     /// The autopilot has sent a command.
     pub fn on_command(&mut self, command: &Command) {
         if records(command.command) {
-            self.spacing_dm = command.args.first().copied().filter(|dm| *dm > 0);
+            let asked = command.args.first();
+            self.spacing = asked.and_then(|argument| Spacing::from_argument(*argument));
             let number = command.args.get(1).copied().unwrap_or(0);
             if let Some(form) = SnapshotForm::from_number(number) {
                 self.snapshot_form = form;
@@ -125,7 +126,7 @@ impl Watch {
 
     /// The way between two snapshots that was asked for.
     pub fn spacing(&self) -> Option<Spacing> {
-        Spacing::from_metres(f64::from(self.spacing_dm?) / 10.0)
+        self.spacing
     }
 }
 

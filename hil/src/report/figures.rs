@@ -41,11 +41,15 @@ pub fn subline(summary: &Summary) -> String {
             summary.route
         );
     }
-    let apart = number::trimmed(summary.spacing_m, 2);
+    let apart = if summary.spacing_m.is_finite() {
+        format!("{} m apart", number::trimmed(summary.spacing_m, 2))
+    } else {
+        "as far apart as odometry allows".to_owned()
+    };
     let how = match summary.homing {
         "odometry" => "odometry alone".to_owned(),
-        "sequence" => format!("snapshots alone, {apart} m apart"),
-        _ => format!("snapshots {apart} m apart and odometry"),
+        "sequence" => format!("snapshots alone, {apart}"),
+        _ => format!("snapshots {apart} and odometry"),
     };
     format!(
         "World {} · route {} · {how} · seed {} · {}",

@@ -5,12 +5,13 @@ pub mod expectation;
 pub mod file;
 mod lens;
 mod meander;
+mod spacing;
 mod storage;
 mod wire_fault;
 
 use autopilot::app::{self, Experiment, Script};
 use clap::ValueEnum;
-use link::{Record, WorldPoint};
+use link::{Mode, Record, WorldPoint};
 
 pub use conditions::{
     Conditions, Correction, LARGEST_SWING, LIGHTS, Quirk, STRONGEST_WIND_M_S, SWING_PERIODS_S,
@@ -18,6 +19,7 @@ pub use conditions::{
 };
 pub use lens::{LensFileError, LensPage};
 pub use meander::{Meander, NoWay};
+pub use spacing::{Distance, NoSpacing, Spacing};
 pub use storage::{Deviation, SnapshotForm, Storage};
 pub use wire_fault::{CameraTrouble, WireFault};
 
@@ -41,6 +43,33 @@ pub enum Route {
     /// A whole experiment of the published app: ways, recording and homing are its own
     #[value(skip)]
     Experiment(Experiment),
+    /// A script of a scenario's own: ways, recording and following are its own
+    #[value(skip)]
+    Scripted(Scripted),
+}
+
+/// What an operator lets the drone do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scripted {
+    /// Step by step. The arguments of commands to record are the scenario's.
+    pub steps: Vec<app::Step>,
+}
+
+impl Scripted {
+    /// With these arguments to each command to record.
+    fn script(&self, arguments: &[u8]) -> Script {
+        let mut steps = self.steps.clone();
+        for step in &mut steps {
+            if let app::Step::Command {
+                mode: Mode::Record(_),
+                args,
+            } = step
+            {
+                args.extend_from_slice(arguments);
+            }
+        }
+        Script { steps }
+    }
 }
 
 /// A way through places.
@@ -65,6 +94,7 @@ impl Route {
             Self::Corridor => "corridor",
             Self::Own(polyline) => &polyline.name,
             Self::Experiment(experiment) => experiment.name(),
+            Self::Scripted(_) => "script",
         }
     }
 
@@ -79,6 +109,7 @@ impl Route {
             Self::Corridor => app::Route::corridor(),
             Self::Own(polyline) => along(&polyline.places, polyline.passes),
             Self::Experiment(experiment) => places_of(&experiment.script(Experiment::REPEATS)),
+            Self::Scripted(scripted) => places_of(&scripted.script(&[])),
         }
     }
 }
@@ -116,7 +147,7 @@ pub enum Homing {
     Sequence,
     /// The same with another distance between snapshots than the firmware's own
     #[value(skip)]
-    SequenceEvery(Spacing),
+    SequenceEvery(Distance),
 }
 
 impl Homing {
@@ -161,57 +192,29 @@ pub struct Scenario {
 impl Scenario {
     /// What the operator lets the flight app do.
     pub fn script(&self) -> Script {
+        let arguments = self.storage.arguments(self.spacing);
         match &self.route {
             Route::Experiment(experiment) => experiment.script(Experiment::REPEATS),
+            Route::Scripted(scripted) => scripted.script(&arguments),
             route => {
-                let arguments = self.storage.arguments(self.spacing);
                 Script::record_and_return(&route.waypoints(), self.homing.record(), &arguments)
             }
         }
     }
 
-    /// The distance between snapshots that holds in this flight, metres.
+    /// The distance between snapshots that holds in this flight, metres; NaN where the firmware finds it on
+    /// the way.
     pub fn snapshot_spacing_m(&self) -> f64 {
         match self.homing {
-            Homing::Both | Homing::Odometry => self.spacing.metres(),
-            Homing::SequenceEvery(spacing) => spacing.metres(),
+            Homing::Both | Homing::Odometry => match self.spacing {
+                Spacing::Every(distance) => distance.metres(),
+                Spacing::ByTheory => f64::NAN,
+            },
+            Homing::SequenceEvery(distance) => distance.metres(),
             Homing::Sequence => pilot::Parameters::DEFAULT
                 .navigator
                 .sequence_spacing_m
                 .into(),
         }
-    }
-}
-
-/// Distance between snapshots, in the firmware's unit of 0.1 m, so that it can be asked for on the
-/// link without rounding.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Spacing {
-    decimetres: u8,
-}
-
-impl Spacing {
-    /// 2 m: what the paper's routes have where it says nothing else.
-    pub const DEFAULT: Self = Self { decimetres: 20 };
-
-    /// From metres; `None` unless a multiple of 0.1 m within 0.2..=10 m.
-    pub fn from_metres(metres: f64) -> Option<Self> {
-        // Closer than 0.2 m there is no odometry between snapshots; beyond 10 m an odometry vector
-        // of 12.7 m at most could not span a leg.
-        let decimetres = metres * 10.0;
-        let whole = (decimetres - decimetres.round()).abs() < 1e-6;
-        (whole && (0.2..=10.0).contains(&metres)).then(|| Self {
-            decimetres: decimetres.round() as u8,
-        })
-    }
-
-    /// In metres.
-    pub fn metres(self) -> f64 {
-        f64::from(self.decimetres) / 10.0
-    }
-
-    /// In the unit of the link's COMMAND argument, 0.1 m.
-    pub fn decimetres(self) -> u8 {
-        self.decimetres
     }
 }

@@ -82,7 +82,7 @@ impl Storage {
 
     /// The arguments of the command to record with snapshots so far apart.
     pub fn arguments(self, spacing: Spacing) -> Vec<u8> {
-        let mut arguments = vec![spacing.decimetres()];
+        let mut arguments = vec![spacing.argument()];
         if self != Self::PAPER {
             arguments.push(self.snapshots.format().number());
             arguments.push(self.deviation.decimetres);
@@ -110,6 +110,7 @@ mod tests {
         };
         let seven = Spacing::from_metres(7.0).expect("whole metres");
         assert_eq!(lean.arguments(seven), [70, 3, 3]);
+        assert_eq!(lean.arguments(Spacing::ByTheory), [255, 3, 3]);
     }
 
     #[test]

@@ -8,6 +8,7 @@ use fake_sensors::world::World;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::script::{self, StepTable};
 use super::{Backend, ScenarioFile, Seeds, Way};
 use crate::scenario::expectation::{Bounds, Expectation, Metric};
 use crate::scenario::{
@@ -18,7 +19,7 @@ use crate::scenario::{
 use crate::toml_file::Mistake;
 
 /// Lengths of a route that the memory of the camera board can hold, metres.
-const LENGTHS_M: RangeInclusive<f32> = 3.0..=2_000.0;
+pub(super) const LENGTHS_M: RangeInclusive<f32> = 3.0..=2_000.0;
 /// Seeds of one scenario.
 const COUNTS: RangeInclusive<u64> = 1..=1_000_000;
 
@@ -55,6 +56,7 @@ enum RouteTable {
     Through(ThroughTable),
     Meander(MeanderTable),
     Experiment(ExperimentName),
+    Script(Vec<StepTable>),
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -91,10 +93,23 @@ enum HomingName {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RecordingTable {
-    spacing: Option<Spanned<f64>>,
+    spacing: Option<Spanned<SpacingTable>>,
     #[serde(default)]
     snapshots: SnapshotForm,
     deviation: Option<Spanned<f64>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged, expecting = "metres, or \"auto\"")]
+enum SpacingTable {
+    Metres(f64),
+    Found(FoundSpacing),
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum FoundSpacing {
+    Auto,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -157,8 +172,8 @@ impl Description {
         let way = check_route(self.route)?;
         if let Some(name) = self.homing {
             let mistake = match (&way, homing) {
-                (Way::Fixed(Route::Experiment(_)), _) => {
-                    Some("an experiment says itself how the drone finds back")
+                (Way::Fixed(Route::Experiment(_) | Route::Scripted(_)), _) => {
+                    Some("a script says itself how the drone finds back")
                 }
                 (_, Homing::SequenceEvery(_)) if self.backend == Backend::Emulator => Some(
                     "the image has its own spacing of a sequence: another one wants backend = \"native\"",
@@ -226,6 +241,11 @@ fn check_route(route: Spanned<RouteTable>) -> Result<Way, Mistake> {
             ExperimentName::CorridorOdometry => Experiment::CorridorOdometry,
             ExperimentName::Distances => Experiment::Rmse,
         }),
+        RouteTable::Script(steps) => {
+            return script::check(&steps)
+                .map(|scripted| Way::Fixed(Route::Scripted(scripted)))
+                .map_err(|reason| (span, reason));
+        }
         RouteTable::Meander(MeanderTable { length }) if LENGTHS_M.contains(&length) => {
             return Ok(Way::Drawn(Meander { length_m: length }));
         }
@@ -267,25 +287,31 @@ fn check_homing(
     homing: Option<HomingName>,
     recording: RecordingTable,
 ) -> Result<(Homing, Spacing), Mistake> {
-    let asked = recording
-        .spacing
-        .map(|metres| match Spacing::from_metres(*metres.get_ref()) {
-            Some(spacing) => Ok(spacing),
-            None => {
-                let metres_asked = metres.get_ref();
-                let reason =
-                    format!("a spacing of {metres_asked} m: from 0.2 to 10 m in steps of 0.1");
-                Err((metres.span(), reason))
-            }
-        })
-        .transpose()?;
-    let homing = match (homing.unwrap_or(HomingName::Both), asked) {
+    let Some(asked) = recording.spacing else {
+        let homing = match homing.unwrap_or(HomingName::Both) {
+            HomingName::Both => Homing::Both,
+            HomingName::Odometry => Homing::Odometry,
+            HomingName::Sequence => Homing::Sequence,
+        };
+        return Ok((homing, Spacing::DEFAULT));
+    };
+    let spacing = match asked.get_ref() {
+        SpacingTable::Found(FoundSpacing::Auto) => Spacing::ByTheory,
+        SpacingTable::Metres(metres) => Spacing::from_metres(*metres).ok_or_else(|| {
+            let reason = format!("a spacing of {metres} m: from 0.2 to 10 m in steps of 0.1");
+            (asked.span(), reason)
+        })?,
+    };
+    let homing = match (homing.unwrap_or(HomingName::Both), spacing) {
         (HomingName::Both, _) => Homing::Both,
         (HomingName::Odometry, _) => Homing::Odometry,
-        (HomingName::Sequence, None) => Homing::Sequence,
-        (HomingName::Sequence, Some(spacing)) => Homing::SequenceEvery(spacing),
+        (HomingName::Sequence, Spacing::Every(distance)) => Homing::SequenceEvery(distance),
+        (HomingName::Sequence, Spacing::ByTheory) => {
+            let reason = "theory spaces snapshots along odometry: a sequence has none";
+            return Err((asked.span(), reason.to_owned()));
+        }
     };
-    Ok((homing, asked.unwrap_or(Spacing::DEFAULT)))
+    Ok((homing, spacing))
 }
 
 impl RecordingTable {

@@ -4,6 +4,7 @@
 //! what does not fit is refused with the line where it stands.
 
 mod description;
+mod script;
 #[cfg(test)]
 mod tests;
 

@@ -1,3 +1,6 @@
+use autopilot::app::{Arrival, Step, Until};
+use link::{Mode, Record, WorldPoint};
+
 use super::*;
 use crate::scenario::SnapshotForm;
 
@@ -48,9 +51,10 @@ fn a_file_says_what_is_flown() {
     assert_eq!(file.seeds.all().collect::<Vec<_>>(), [3, 4]);
     let scenario = file.scenario(4).expect("a flight");
     assert_eq!((scenario.route, scenario.seed), (Route::Corner, 4));
+    let every_metre = Spacing::from_metres(1.0).expect("a spacing");
     assert_eq!(
-        (scenario.homing, scenario.spacing.metres()),
-        (Homing::Both, 1.0)
+        (scenario.homing, scenario.spacing),
+        (Homing::Both, every_metre)
     );
     let storage = scenario.storage;
     assert_eq!(
@@ -77,6 +81,12 @@ fn what_cannot_be_flown_is_refused_with_its_line_and_a_reason() {
             "unknown field `spaceing`",
         ),
         ("spacing = 1.0", "spacing = 0.25", 8, "steps of 0.1"),
+        (
+            "spacing = 1.0",
+            "spacing = \"far\"",
+            8,
+            "metres, or \"auto\"",
+        ),
         ("deviation = 0.3", "deviation = 0.25", 10, "from 0.1 to 1 m"),
         ("lean", "tiny", 9, "unknown variant `tiny`"),
         ("count = 2", "count = 0", 5, "0 seeds: from 1"),
@@ -88,6 +98,24 @@ fn what_cannot_be_flown_is_refused_with_its_line_and_a_reason() {
             "{ through = { places = [[0, 0]] } }",
             4,
             "two places",
+        ),
+        (
+            "\"corner\"",
+            "{ script = [{ record = \"both\" }, { fly-to = [-3, 0] }] }",
+            4,
+            "ends with following",
+        ),
+        (
+            "\"corner\"",
+            "{ script = [{ follow-for = 0 }] }",
+            4,
+            "from 0.1 to 10000 s",
+        ),
+        (
+            "\"corner\"",
+            "{ script = [\"land\"] }",
+            4,
+            "unknown variant `land`",
         ),
         (
             "\"corner\"",
@@ -139,11 +167,23 @@ fn what_cannot_be_flown_is_refused_with_its_line_and_a_reason() {
 }
 
 #[test]
+fn snapshots_are_spaced_by_theory_where_the_file_says_auto() {
+    let file = parse(&GOOD.replace("spacing = 1.0", "spacing = \"auto\"")).expect("a scenario");
+    let scenario = file.scenario(3).expect("a flight");
+    assert_eq!(scenario.spacing, Spacing::ByTheory);
+    assert!(scenario.snapshot_spacing_m().is_nan());
+}
+
+#[test]
 fn a_scenario_that_its_board_cannot_fly_is_refused() {
     let sequence = "route = \"corner\"\nhoming = \"sequence\"\nbackend = \"emulator\"";
     let (line, reason) = refused("route = \"corner\"", sequence);
     assert_eq!(line, 5);
     assert!(reason.contains("native"), "{reason}");
+    let sequence = "homing = \"sequence\"\n[recording]\nspacing = \"auto\"";
+    let (line, reason) = refused("[recording]\nspacing = 1.0", sequence);
+    assert_eq!(line, 9);
+    assert!(reason.contains("along odometry"), "{reason}");
     let fault = "camera_fault = { name = \"unplugged\", at = 10 }";
     let (line, reason) = refused("quirks = [\"self-acknowledge\"]", fault);
     assert_eq!(line, 14);
@@ -180,4 +220,33 @@ fn a_way_of_its_own_leads_through_its_places_north_and_east() {
         .collect();
     // The link's x is north, its y west.
     assert_eq!(places, [(0.0, 0.0), (-3.0, -1.0), (0.0, 0.0)]);
+}
+
+#[test]
+fn a_script_is_flown_step_by_step_with_the_files_recording() {
+    let own = "{ script = [\"clear\", { record = \"both\" }, { fly-to = [-3, 1] }, \
+        { follow-for = 4.5 }, \"idle\", { record = \"snapshot\" }, \"follow-home\"] }";
+    let file = parse(&GOOD.replace("\"corner\"", own)).expect("a scenario");
+    let scenario = file.scenario(3).expect("a flight");
+    let command = |mode, args: &[u8]| Step::Command {
+        mode,
+        args: args.to_vec(),
+    };
+    let follow = |until| Step::Follow {
+        mode: Mode::Follow,
+        until,
+    };
+    let expected = [
+        command(Mode::Clear, &[]),
+        command(Mode::Record(Record::ROUTE), &[10, 3, 3]),
+        Step::FlyTo {
+            place: WorldPoint { x: -3.0, y: -1.0 },
+            arrival: Arrival::WAYPOINT,
+        },
+        follow(Until::Elapsed(4_500)),
+        command(Mode::Idle, &[]),
+        command(Mode::Record(Record::SINGLE_SNAPSHOT), &[10, 3, 3]),
+        follow(Until::Home),
+    ];
+    assert_eq!(scenario.script().steps, expected);
 }
