@@ -405,3 +405,56 @@ fn split(solids: &mut [Solid]) -> usize {
 fn sort_along(solids: &mut [Solid], axis: usize) {
     solids.sort_by(|a, b| a.centre[axis].total_cmp(&b.centre[axis]));
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::world::scene::fan::{Directions, FAN};
+    use crate::world::scene::ray::Aperture;
+
+    /// Balls in disorder, a few metres round the origin.
+    fn balls(places: &[[f32; 3]]) -> Vec<Solid> {
+        let ball = |place: &[f32; 3]| Solid {
+            centre: Vector3::from(*place),
+            half: Vector3::repeat(0.4),
+            form: Form::Ball,
+            ragged: 0.0,
+            material: 0,
+        };
+        places.iter().map(ball).collect()
+    }
+
+    /// Where the solids are that each ray comes to, in this order, where nothing is hidden.
+    fn ways(tree: &Bvh, directions: &[[f32; 3]; FAN], of: Subset) -> [Vec<Vector3<f32>>; FAN] {
+        let directions = directions.map(|way| Vector3::from(way).normalize());
+        let apertures = [Aperture::new(0.05, 0.05); FAN];
+        let rays = Rays::new(Vector3::zeros(), &Directions::new(&directions), &apertures);
+        let mut pixels = Pixels::none();
+        pixels.begin(Eight::all(f32::INFINITY), of);
+        let mut walk = tree.walk(of);
+        let mut ways: [Vec<Vector3<f32>>; FAN] = Default::default();
+        while let Some((solids, of)) = walk.next(&rays, &mut pixels) {
+            for ray in of.iter() {
+                ways[ray].extend(solids.iter().map(|solid| solid.centre));
+            }
+        }
+        ways
+    }
+
+    proptest! {
+        #[test]
+        fn each_ray_of_a_fan_comes_to_solids_in_the_order_in_which_it_would_come_alone(
+            places in prop::collection::vec(prop::array::uniform3(-4.0_f32..4.0), 5..80),
+            directions in prop::array::uniform8(prop::array::uniform3(0.1_f32..1.0)),
+        ) {
+            let tree = Bvh::new(balls(&places), |_, _| None);
+            let together = ways(&tree, &directions, Subset::ALL);
+            for ray in 0..FAN {
+                let alone = ways(&tree, &directions, Subset::only(ray));
+                prop_assert_eq!(&together[ray], &alone[ray]);
+            }
+        }
+    }
+}
