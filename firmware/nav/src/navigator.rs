@@ -22,7 +22,9 @@
 mod follower;
 mod homing_run;
 mod mode;
+mod motion;
 mod parameters;
+mod place_fit;
 mod realignment;
 mod recorder;
 mod spacing;
@@ -34,6 +36,7 @@ use crate::snapshot::{Snapshot, SnapshotFormat};
 use crate::spectrum::Spectrum;
 
 use follower::{Context, Follower};
+use motion::Motion;
 use realignment::Realigner;
 use recorder::Recorder;
 
@@ -50,6 +53,7 @@ pub struct Navigator {
     mode: Mode,
     activity: Activity,
     realigner: Realigner,
+    motion: Motion,
 }
 
 #[derive(Clone, Debug)]
@@ -68,6 +72,7 @@ impl Navigator {
             mode: Mode::Idle,
             activity: Activity::Resting,
             realigner: Realigner::new(),
+            motion: Motion::new(),
         }
     }
 
@@ -174,10 +179,13 @@ impl Navigator {
             step.report(Event::InvalidPose);
             return step;
         }
+        let seen_from = self
+            .motion
+            .seen_from(&self.parameters, now_ms, pose.position);
         match &mut self.activity {
             Activity::Resting => {}
             Activity::Recording(recorder) => {
-                let now = (now_ms, pose);
+                let now = (now_ms, seen_from);
                 recorder.step(&self.parameters, &mut self.route, now, view, &mut step);
             }
             Activity::Following(follower) => {
@@ -188,6 +196,7 @@ impl Navigator {
                     now_ms,
                     pose,
                     view,
+                    seen_from,
                 };
                 follower.step(&mut context, &mut step);
             }

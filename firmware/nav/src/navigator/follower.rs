@@ -48,6 +48,7 @@ enum Phase {
     Settling {
         since_ms: u32,
         correction: Correction,
+        at: Point2<f32>,
     },
     /// Nothing left to do. `told_ms`: when the autopilot was told how much of the route is left; none
     /// where there was no route.
@@ -65,6 +66,8 @@ pub(super) struct Context<'a> {
     pub(super) now_ms: u32,
     pub(super) pose: &'a Pose,
     pub(super) view: Option<&'a Spectrum>,
+    /// Where the view was seen from.
+    pub(super) seen_from: Point2<f32>,
 }
 
 impl Follower {
@@ -89,13 +92,10 @@ impl Follower {
     pub(super) fn step(&mut self, context: &mut Context, step: &mut Step) {
         match self.phase {
             Phase::Starting { on_its_way } => self.start(on_its_way, context, step),
-            Phase::Settling {
-                since_ms,
-                correction,
-            } => {
+            Phase::Settling { since_ms, at, .. } => {
                 let settling_ms = context.parameters.settling_time_ms;
                 if has_passed(since_ms, context.now_ms, settling_ms) {
-                    self.go_on(correction.to.position, context, step);
+                    self.go_on(at, context, step);
                 }
             }
             Phase::Holding {
@@ -201,9 +201,13 @@ impl Follower {
         context: &mut Context,
         step: &mut Step,
     ) {
-        let run = HomingRun::new(context.parameters, context.now_ms, target, fallback)
+        let parameters = context.parameters;
+        let mut run = HomingRun::new(parameters, context.now_ms, target, fallback)
             .reaching_out()
-            .turned_at_most(self.turn_limit(context.parameters));
+            .turned_at_most(self.turn_limit(parameters));
+        if context.route.top_is_visual_only() {
+            run = run.trusted_after(parameters.few_vectors);
+        }
         self.searched = false;
         self.phase = Phase::Homing { run, done: false };
         let snapshot = context
@@ -252,9 +256,9 @@ impl Follower {
             Phase::Searching { run, expected } => {
                 return self.search(run, expected, context, step);
             }
-            Phase::Settling { correction, .. } => {
+            Phase::Settling { correction, at, .. } => {
                 step.correction = Some(correction);
-                correction.to.position
+                at
             }
             Phase::Holding { at, .. } => at,
             Phase::Leg { .. } | Phase::Starting { .. } => context.route.tip(),

@@ -1,8 +1,9 @@
 //! Homing at one snapshot: from the first view there to arrival.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::Point2;
 
 use super::parameters::{Parameters, has_passed};
+use super::place_fit::PlaceFit;
 use super::step::{Arrival, Event, SetPoint, Source, Step};
 use crate::homing::{self, HomingParameters, HomingVector, NoVectorReason, Resemblance};
 use crate::pose::Pose;
@@ -22,10 +23,12 @@ pub(super) struct HomingRun {
     reach_m: f32,
     /// The farthest turn that is believed, radians.
     turn_limit: f32,
+    /// So many vectors are needed.
+    least_vectors: u16,
     /// The low-passed set-point.
     target: Point2<f32>,
-    /// The low-passed vector.
-    filtered: Option<Filtered>,
+    /// Where the snapshot is.
+    fit: Option<PlaceFit>,
     /// Vectors so far.
     vectors: u16,
     /// Why there is none now.
@@ -34,12 +37,6 @@ pub(super) struct HomingRun {
     missing_views: u8,
     least_difference: f32,
     frames_since_least: u16,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Filtered {
-    offset_m: Vector2<f32>,
-    rotation: f32,
 }
 
 /// When homing may end.
@@ -64,8 +61,9 @@ impl HomingRun {
             fallback,
             reach_m: parameters.leash_m,
             turn_limit: f32::INFINITY,
+            least_vectors: parameters.least_vectors,
             target,
-            filtered: None,
+            fit: None,
             vectors: 0,
             failure: None,
             missing_views: 0,
@@ -86,18 +84,24 @@ impl HomingRun {
         self
     }
 
-    /// Takes a view into account and gives the set-point.
+    /// The same, to be trusted after `vectors`.
+    pub(super) const fn trusted_after(mut self, vectors: u16) -> Self {
+        self.least_vectors = vectors;
+        self
+    }
+
+    /// Takes a view, and where it was seen from, into account and gives the set-point.
     pub(super) fn step(
         &mut self,
         parameters: &Parameters,
         stored: &StoredView,
         pose: &Pose,
-        view: Option<&Spectrum>,
+        (view, seen_from): (Option<&Spectrum>, Point2<f32>),
         step: &mut Step,
     ) -> SetPoint {
         let homing = self.homing(parameters, pose);
         let vector = view.map(|view| vector(homing, self.turn_limit, stored, view));
-        self.take(parameters, pose, vector, step)
+        self.take(parameters, (pose, seen_from), vector, step)
     }
 
     /// The same on a search: the target without a vector is another in each step, and a vector to
@@ -105,9 +109,9 @@ impl HomingRun {
     pub(super) fn step_in_search(
         &mut self,
         parameters: &Parameters,
-        stored: &StoredView,
+        (stored, place): (&StoredView, Point2<f32>),
         pose: &Pose,
-        (view, place): (Option<&Spectrum>, Point2<f32>),
+        (view, seen_from): (Option<&Spectrum>, Point2<f32>),
         step: &mut Step,
     ) -> SetPoint {
         self.fallback = place;
@@ -118,13 +122,13 @@ impl HomingRun {
                 vector(parameters.homing, self.turn_limit, stored, view)
             }
         });
-        self.take(parameters, pose, vector, step)
+        self.take(parameters, (pose, seen_from), vector, step)
     }
 
     fn take(
         &mut self,
         parameters: &Parameters,
-        pose: &Pose,
+        (pose, seen_from): (&Pose, Point2<f32>),
         vector: Option<Result<HomingVector, NoVectorReason>>,
         step: &mut Step,
     ) -> SetPoint {
@@ -135,7 +139,7 @@ impl HomingRun {
         match vector {
             Some(Ok(vector)) => {
                 self.failure = None;
-                self.follow(parameters, pose, &vector);
+                self.follow(parameters, seen_from, &vector);
             }
             Some(Err(reason)) => self.fall_back(parameters, reason, step),
             // Frames and steps are not in phase: a single step without a view means nothing.
@@ -150,7 +154,7 @@ impl HomingRun {
             },
             target: self.target,
             start: pose.position,
-            delta_yaw: self.filtered.map_or(0.0, |filtered| filtered.rotation),
+            delta_yaw: self.rotation(),
         }
     }
 
@@ -171,24 +175,19 @@ impl HomingRun {
         self.target += (self.fallback - self.target) * parameters.smoothing;
     }
 
-    fn follow(&mut self, parameters: &Parameters, pose: &Pose, vector: &HomingVector) {
-        let offset_m = vector.displacement * parameters.environment_radius_m;
-        let goal = pose.position + offset_m.cap_magnitude(parameters.homing_step_m);
+    fn follow(&mut self, parameters: &Parameters, seen_from: Point2<f32>, vector: &HomingVector) {
+        let fit = match self.fit {
+            None => PlaceFit::to(seen_from, vector),
+            Some(fit) => fit.and(parameters, seen_from, vector),
+        };
+        self.fit = Some(fit);
+        let way = fit.place(parameters) - seen_from;
+        let goal = seen_from + way.cap_magnitude(parameters.homing_step_m);
         self.target += (goal - self.target) * parameters.smoothing;
         let strayed = self.target - self.fallback;
         if strayed.norm() > self.reach_m {
             self.target = self.fallback + strayed.cap_magnitude(self.reach_m);
         }
-        self.filtered = Some(match self.filtered {
-            None => Filtered {
-                offset_m,
-                rotation: vector.rotation,
-            },
-            Some(old) => Filtered {
-                offset_m: old.offset_m + (offset_m - old.offset_m) * parameters.smoothing,
-                rotation: old.rotation + (vector.rotation - old.rotation) * parameters.smoothing,
-            },
-        });
         self.vectors = self.vectors.saturating_add(1);
         if vector.difference < self.least_difference {
             self.least_difference = vector.difference;
@@ -202,38 +201,41 @@ impl HomingRun {
     pub(super) fn arrival(
         &self,
         parameters: &Parameters,
-        now_ms: u32,
+        (now_ms, pose): (u32, &Pose),
         ending: &Ending,
     ) -> Option<Arrival> {
         let is_over = |limit_ms| has_passed(self.started_ms, now_ms, limit_ms);
         if ending.time_limit_ms.is_some_and(is_over) {
             return Some(Arrival::TimeOut);
         }
-        let radius_m = ending
-            .radius_m
-            .filter(|_| self.is_trustworthy(parameters))?;
-        if self.offset_m() < radius_m {
+        let radius_m = ending.radius_m.filter(|_| self.is_trustworthy())?;
+        if self.way_m(parameters, pose) < radius_m {
             return Some(Arrival::Near);
         }
         let patience = parameters.frames_without_minimum;
         (patience > 0 && self.frames_since_least >= patience).then_some(Arrival::NoNewMinimum)
     }
 
-    /// Whether the low-passed vector is good enough to realign the pose: it rests on enough views,
-    /// the newest among them.
-    pub(super) fn is_trustworthy(&self, parameters: &Parameters) -> bool {
-        self.vectors >= parameters.least_vectors && self.failure.is_none()
+    /// Whether what is seen is good enough to realign the pose: it rests on enough views, the newest
+    /// among them.
+    pub(super) fn is_trustworthy(&self) -> bool {
+        self.vectors >= self.least_vectors && self.failure.is_none()
     }
 
     /// How far away the snapshot looks, metres.
-    fn offset_m(&self) -> f32 {
-        self.filtered
-            .map_or(f32::INFINITY, |filtered| filtered.offset_m.norm())
+    fn way_m(&self, parameters: &Parameters, pose: &Pose) -> f32 {
+        self.place(parameters)
+            .map_or(f32::INFINITY, |place| (place - pose.position).norm())
+    }
+
+    /// Where the snapshot was taken, by sight, in the coordinates of the estimate.
+    pub(super) fn place(&self, parameters: &Parameters) -> Option<Point2<f32>> {
+        self.fit.map(|fit| fit.place(parameters))
     }
 
     /// How far the snapshot's viewer is turned counter-clockwise against the current one, radians.
     pub(super) fn rotation(&self) -> f32 {
-        self.filtered.map_or(0.0, |filtered| filtered.rotation)
+        self.fit.map_or(0.0, |fit| fit.rotation())
     }
 
     /// The set-point.

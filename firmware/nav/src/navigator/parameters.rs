@@ -34,24 +34,33 @@ pub struct Parameters {
     pub simplify_tolerance_m: f32,
     /// A point of the route counts as reached within this distance.
     pub acceptance_radius_m: f32,
-    /// The distance R of the surroundings: metres of one unit of the homing vector.
+    /// The distance R of the surroundings, metres of one unit of the homing vector, as long as nothing tells
+    /// of it.
     pub environment_radius_m: f32,
+    /// The least and the greatest R that the way flown may tell.
+    pub environment_bounds_m: (f32, f32),
+    /// How much that counts against the first: the variance of a vector over that of 1/R between places, m².
+    pub environment_prior_m2: f32,
+    /// So many vectors count in the fit of a snapshot's place.
+    pub fitted_vectors: f32,
     /// Bound of the set-point's distance while homing.
     pub homing_step_m: f32,
-    /// Share of each new homing vector in the low-passed set-point and rotation, 0..=1.
+    /// Share of each new homing vector in the low-passed set-point and turn, 0..=1.
     pub smoothing: f32,
     /// Time at a snapshot.
     pub homing_time_ms: u32,
     /// Time at a snapshot of a purely visual sequence.
     pub sequence_homing_time_ms: u32,
-    /// Homing at such a snapshot ends early when the low-passed vector is shorter than this.
+    /// Homing at such a snapshot ends early when it looks nearer than this.
     pub sequence_arrival_radius_m: f32,
     /// Time at the last snapshot, which is home; homing does not end earlier there.
     pub final_homing_time_ms: u32,
-    /// Homing ends early when the low-passed vector is shorter than this; zero never ends it early.
+    /// Homing ends early when the snapshot looks nearer than this; zero never ends it early.
     pub arrival_radius_m: f32,
     /// Homing vectors needed before homing may end early or realign the pose.
     pub least_vectors: u16,
+    /// The same at a snapshot of a visual sequence; and to go there where one was searched for.
+    pub few_vectors: u16,
     /// After a realignment, how far the drone's heading may be off at the next snapshot however near that
     /// is, radians.
     pub heading_error_rad: f32,
@@ -83,6 +92,8 @@ pub struct Parameters {
     pub realignment_interval_ms: u32,
     /// At home: time between two MAP messages that say so.
     pub home_period_ms: u32,
+    /// How old a view is when a step looks at it, seconds, in the mean.
+    pub view_age_s: f32,
     /// Fourier homing.
     pub homing: HomingParameters,
     /// Farther than this from where odometry has the snapshot it is that from afar.
@@ -96,7 +107,9 @@ impl Parameters {
     /// - Snapshots every 2 m: paper, "Route following"; with it the U route of 56 m takes 0.65 kB. A
     ///   visual sequence needs 0.25 m: paper, Fig. 6C.
     /// - Acceptance 0.2 m: two STATE periods of flight at 1 m/s. Homing starts that near.
-    /// - R 1.5 m: in rooms of 10 m, 1 m homes too slowly, 4 m too nervously.
+    /// - R 1.5 m: in rooms of 10 m, 1 m homes too slowly, 4 m too nervously. What the way flown tells of it
+    ///   is 1.5 m in the rig's corridors, 3 to 7 m in its halls and 5 to 15 m in its forest. 1/R differs by
+    ///   0.3 /m between them, and a vector is off by 0.02: (0.02/0.3)² m². Two seconds of vectors.
     /// - Homing step 0.3 m and smoothing 0.3: pitch and roll stay small, so that the horizon stays in
     ///   the picture.
     /// - 3 s at a snapshot: the paper replaced its 10-frame rule by a time-out of unknown length; 2 to
@@ -104,8 +117,10 @@ impl Parameters {
     /// - At a snapshot of a visual sequence up to 4 s, until it looks nearer than 0.03 m: in a room whose
     ///   walls are 5 m away that is 0.1 m of the 0.25 m to the next. A fixed 2 s left the drone behind its
     ///   sequence where the walls are far.
-    /// - Early end below 0.06 m: a fifth of the time is saved at no loss. Five vectors: half a second,
-    ///   after which the low-pass has forgotten five sixths of its first value.
+    /// - Early end below 0.06 m: a fifth of the time is saved at no loss. Twelve vectors: on the way to the
+    ///   snapshot and over it the drone has moved by some 0.3 m, and the fit has a base. With five, drones
+    ///   went on past their snapshots, each a little farther, until they were lost. Five, half a second, at a
+    ///   snapshot of a sequence: the next is as near, and on a search the drone soon is elsewhere.
     /// - Once realigned, the heading drifts by 1.6 degrees in 5 m (crazyflie-firmware kalman_core with this
     ///   drone's sensors): 1.1 degrees a metre are three times that. 11 degrees for what a vector from some
     ///   0.3 m away is off by: the 58 realignments of a flight along 120 m of corridor turn by 7 at most.
@@ -126,6 +141,8 @@ impl Parameters {
     ///   away; only back to a single snapshot (paper, Fig. 4) does it.
     /// - The app applies a correction once it arrives and the filter within two periods: 300 ms. Two
     ///   realignments within a second could contradict each other.
+    /// - A frame takes 39 ms, of which the horizon is the middle; it waits up to as long for a step, and the
+    ///   shutter was open for some 20 ms: 19 + 19 + 10 ms, and 10 for what the link and the filter take.
     /// - Each MAP goes out once, and a broken one is lost. That the drone is home, the autopilot must
     ///   hear some time: once a second.
     pub const DEFAULT: Self = Self {
@@ -137,6 +154,9 @@ impl Parameters {
         simplify_tolerance_m: SIMPLIFY_TOLERANCE_M,
         acceptance_radius_m: 0.2,
         environment_radius_m: 1.5,
+        environment_bounds_m: (1.0, 12.0),
+        environment_prior_m2: 0.005,
+        fitted_vectors: 20.0,
         homing_step_m: 0.3,
         smoothing: 0.3,
         homing_time_ms: 3_000,
@@ -144,7 +164,8 @@ impl Parameters {
         sequence_arrival_radius_m: 0.03,
         final_homing_time_ms: 7_000,
         arrival_radius_m: 0.06,
-        least_vectors: 5,
+        least_vectors: 12,
+        few_vectors: 5,
         heading_error_rad: 0.2,
         heading_drift_rad_m: 0.02,
         frames_without_minimum: 0,
@@ -158,6 +179,7 @@ impl Parameters {
         settling_time_ms: 300,
         realignment_interval_ms: 1_000,
         home_period_ms: 1_000,
+        view_age_s: 0.06,
         homing: HomingParameters::DEFAULT,
         far_m: 1.0,
     };

@@ -13,7 +13,6 @@ use super::mode::Recording;
 use super::parameters::{Parameters, RETURN_SPEED_M_S, THEORY_M};
 use super::spacing::{Drift, catchment, deviations_within};
 use super::step::{Event, Step};
-use crate::pose::Pose;
 use crate::route::{Route, RouteFull, VECTOR_SPACING_M};
 use crate::spectrum::Spectrum;
 
@@ -56,14 +55,14 @@ impl Recorder {
         &mut self,
         parameters: &Parameters,
         route: &mut Route,
-        (now_ms, pose): (u32, &Pose),
+        now: (u32, Point2<f32>),
         view: Option<&Spectrum>,
         step: &mut Step,
     ) {
         if self.stopped {
             return;
         }
-        if self.record(parameters, route, (now_ms, pose.position), view, step) == Err(RouteFull) {
+        if self.record(parameters, route, now, view, step) == Err(RouteFull) {
             self.stopped = true;
             step.report(Event::RouteFull);
         }

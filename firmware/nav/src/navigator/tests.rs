@@ -3,6 +3,7 @@ extern crate std;
 mod capacity;
 mod entry;
 mod lost;
+mod realigning;
 mod turns;
 
 use std::boxed::Box;

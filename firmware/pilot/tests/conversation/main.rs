@@ -226,10 +226,10 @@ fn a_dark_horizon_asks_for_light_in_proportion() {
 /// Something that happens before each STATE.
 type Disturbance = fn(&mut Bench);
 
-/// Records a metre northward with a snapshot every half metre.
+/// Records a metre northward with a snapshot every four decimetres.
 fn record(disturb: Disturbance) -> Bench {
     let mut bench = Bench::new();
-    bench.command(ROUTE, &[5]);
+    bench.command(ROUTE, &[4]);
     for step in 0..=10 {
         bench.see(&patches());
         disturb(&mut bench);

@@ -50,12 +50,12 @@ impl Follower {
             context.parameters,
             &top.view,
             context.pose,
-            context.view,
+            (context.view, context.seen_from),
             step,
         );
         self.phase = Phase::Homing { run, done };
         let ending = ending(self.stays, context);
-        match run.arrival(context.parameters, context.now_ms, &ending) {
+        match run.arrival(context.parameters, (context.now_ms, context.pose), &ending) {
             Some(by) if !done && may_realign(context) => {
                 step.report(Event::Arrived { by });
                 self.leave(&run, set_point, context, step)
@@ -88,7 +88,7 @@ impl Follower {
             top.zip(context.view)
                 .is_some_and(|(top, view)| is_of_another_place(context.parameters, &top.view, view))
         };
-        if run.is_trustworthy(context.parameters) {
+        if run.is_trustworthy() {
             // Who tells the drone to stay says where it is.
             if !self.stays && elsewhere() {
                 Sight::OtherPlace
@@ -103,14 +103,19 @@ impl Follower {
     /// Goes on from the snapshot with the pose that it was taken at.
     fn realign(&mut self, run: &HomingRun, context: &mut Context, step: &mut Step) -> SetPoint {
         // Without odometry nobody knows where the snapshot was taken, but the heading is known.
-        let position = recorded_position(context.route).unwrap_or(context.pose.position);
+        let estimate = context.pose.position;
+        let recorded = recorded_position(context.route);
+        // What is left of the way there is not flown any more, but known.
+        let here = recorded
+            .zip(run.place(context.parameters))
+            .map_or(estimate, |(recorded, place)| recorded + (estimate - place));
         if !self.stays {
             context.route.pop_snapshot();
         }
         let correction =
             context
                 .realigner
-                .realign(context.now_ms, context.pose, position, run.rotation());
+                .realign(context.now_ms, context.pose, here, run.rotation());
         step.report(Event::Realigned {
             index: correction.index,
         });
@@ -118,11 +123,13 @@ impl Follower {
         self.other_places = 0;
         self.unseen_m = 0.0;
         self.heading_is_known = true;
+        let at = recorded.unwrap_or(estimate);
         self.phase = Phase::Settling {
             since_ms: context.now_ms,
             correction,
+            at,
         };
-        by_odometry(position, context.pose)
+        by_odometry(at, context.pose)
     }
 }
 

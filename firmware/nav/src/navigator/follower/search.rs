@@ -60,7 +60,9 @@ impl Follower {
     fn start_search(&mut self, run: &HomingRun, context: &mut Context, step: &mut Step) {
         let expected = run.fallback();
         self.searched = true;
-        let run = self.anew(run, expected, context);
+        let run = self
+            .anew(run, expected, context)
+            .trusted_after(context.parameters.few_vectors);
         self.phase = Phase::Searching { run, expected };
         step.report(Event::SearchStarted {
             index: map_entry(context.route, None).snapshot_index,
@@ -90,9 +92,11 @@ impl Follower {
             self.miss(&run, sight, context, step);
             return set_point;
         };
-        let looked = (context.view, expected + offset);
-        let set_point = run.step_in_search(parameters, &top.view, context.pose, looked, step);
-        self.phase = if run.is_trustworthy(parameters) {
+        let sight = (context.view, context.seen_from);
+        let place = expected + offset;
+        let set_point =
+            run.step_in_search(parameters, (&top.view, place), context.pose, sight, step);
+        self.phase = if run.is_trustworthy() {
             let run = self.anew(&run, expected, context);
             Phase::Homing { run, done: false }
         } else {

@@ -1,0 +1,88 @@
+//! How fast the drone goes, and where it was when the camera saw what is looked at now.
+
+use nalgebra::{Point2, Vector2};
+
+use super::parameters::Parameters;
+
+/// Between two poses at most, milliseconds: two periods of STATE. What lies further apart tells no speed.
+const LONGEST_MS: u32 = 250;
+/// The fastest that this drone flies, metres a second; what looks faster is a correction of the estimate.
+const FASTEST_M_S: f32 = 1.5;
+
+/// The last pose that was told.
+#[derive(Clone, Debug)]
+pub(super) struct Motion {
+    last: Option<(u32, Point2<f32>)>,
+}
+
+impl Motion {
+    pub(super) const fn new() -> Self {
+        Self { last: None }
+    }
+
+    /// Where the newest view was seen from, by a drone that is at `position` now.
+    pub(super) fn seen_from(
+        &mut self,
+        parameters: &Parameters,
+        now_ms: u32,
+        position: Point2<f32>,
+    ) -> Point2<f32> {
+        let last = self.last.replace((now_ms, position));
+        position - velocity(last, now_ms, position) * parameters.view_age_s
+    }
+}
+
+/// Metres a second.
+fn velocity(last: Option<(u32, Point2<f32>)>, now_ms: u32, position: Point2<f32>) -> Vector2<f32> {
+    let Some((last_ms, last)) = last else {
+        return Vector2::zeros();
+    };
+    let elapsed_ms = now_ms.wrapping_sub(last_ms);
+    let elapsed_s = elapsed_ms as f32 * 0.001;
+    let way = position - last;
+    // Written so that NaN and a clock that stands still are no speed.
+    if elapsed_ms <= LONGEST_MS && way.norm() < FASTEST_M_S * elapsed_s {
+        way / elapsed_s
+    } else {
+        Vector2::zeros()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PARAMETERS: Parameters = Parameters::DEFAULT;
+
+    /// How far behind the second of two poses its view was seen from, metres.
+    fn behind(elapsed_ms: u32, way_m: f32) -> f32 {
+        // Shortly before the clock wraps.
+        let began_ms = u32::MAX - 20;
+        let mut motion = Motion::new();
+        motion.seen_from(&PARAMETERS, began_ms, Point2::origin());
+        let here = Point2::new(way_m, 0.0);
+        let seen_from = motion.seen_from(&PARAMETERS, began_ms.wrapping_add(elapsed_ms), here);
+        assert!(seen_from.y == 0.0);
+        here.x - seen_from.x
+    }
+
+    #[test]
+    fn a_drone_in_flight_is_ahead_of_what_it_sees() {
+        let half_a_metre_a_second = behind(100, 0.05);
+        assert!((half_a_metre_a_second - 0.5 * PARAMETERS.view_age_s).abs() < 1e-6);
+        assert_eq!(behind(100, 0.0), 0.0);
+    }
+
+    #[test]
+    fn a_correction_of_the_estimate_is_no_flight_and_neither_is_a_pause() {
+        assert_eq!(behind(100, 0.5), 0.0);
+        assert_eq!(behind(5_000, 0.5), 0.0);
+        assert_eq!(behind(0, 0.5), 0.0);
+    }
+
+    #[test]
+    fn the_first_view_was_seen_from_here() {
+        let here = Point2::new(3.0, 4.0);
+        assert_eq!(Motion::new().seen_from(&PARAMETERS, 7, here), here);
+    }
+}
