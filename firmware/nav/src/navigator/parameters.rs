@@ -41,6 +41,8 @@ pub struct Parameters {
     pub environment_bounds_m: (f32, f32),
     /// How much that counts against the first: the variance of a vector over that of 1/R between places, m².
     pub environment_prior_m2: f32,
+    /// So many vectors tell R: those of the approach.
+    pub measuring_vectors: f32,
     /// So many vectors count in the fit of a snapshot's place.
     pub fitted_vectors: f32,
     /// Bound of the set-point's distance while homing.
@@ -108,8 +110,11 @@ impl Parameters {
     ///   visual sequence needs 0.25 m: paper, Fig. 6C.
     /// - Acceptance 0.2 m: two STATE periods of flight at 1 m/s. Homing starts that near.
     /// - R 1.5 m: in rooms of 10 m, 1 m homes too slowly, 4 m too nervously. What the way flown tells of it
-    ///   is 1.5 m in the rig's corridors, 3 to 7 m in its halls and 5 to 15 m in its forest. 1/R differs by
-    ///   0.3 /m between them, and a vector is off by 0.02: (0.02/0.3)² m². Two seconds of vectors.
+    ///   is 1.5 m in the rig's corridors, 3 to 7 m in its halls and 5 to 15 m in its forest; beyond 6 m the noise
+    ///   of a vector would lead half as far as the next snapshot is. 1/R differs by
+    ///   0.3 /m between them, and a vector is off by 0.02: (0.02/0.3)² m². Two seconds of
+    ///   vectors for R; for the place all of a stay at home, so that a view that is a little off does not lead a
+    ///   drone that hovers farther and farther away.
     /// - Homing step 0.3 m and smoothing 0.3: pitch and roll stay small, so that the horizon stays in
     ///   the picture.
     /// - 3 s at a snapshot: the paper replaced its 10-frame rule by a time-out of unknown length; 2 to
@@ -154,9 +159,10 @@ impl Parameters {
         simplify_tolerance_m: SIMPLIFY_TOLERANCE_M,
         acceptance_radius_m: 0.2,
         environment_radius_m: 1.5,
-        environment_bounds_m: (1.0, 12.0),
+        environment_bounds_m: (1.0, 6.0),
         environment_prior_m2: 0.005,
-        fitted_vectors: 20.0,
+        measuring_vectors: 20.0,
+        fitted_vectors: 70.0,
         homing_step_m: 0.3,
         smoothing: 0.3,
         homing_time_ms: 3_000,

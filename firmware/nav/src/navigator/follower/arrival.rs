@@ -123,7 +123,12 @@ impl Follower {
         self.other_places = 0;
         self.unseen_m = 0.0;
         self.heading_is_known = true;
-        let at = recorded.unwrap_or(estimate);
+        // The next leg makes up for what is left; home is where homing has led to.
+        let at = if context.route.is_empty() {
+            here
+        } else {
+            recorded.unwrap_or(estimate)
+        };
         self.phase = Phase::Settling {
             since_ms: context.now_ms,
             correction,
