@@ -135,34 +135,33 @@ fn an_app_that_acknowledges_itself_flies_to_the_bit_as_others_where_nothing_is_l
 }
 
 /// Eight messages that nobody needs in front of every vector that comes alone: the first call of the window comes too
-/// early for any of them, and the vector is left for the tenth.
-fn with_eight_in_front(quirks: Quirks) -> Flown {
+/// early for any of them, and the vector is left for the tenth. The flight, and how many vectors came alone.
+fn with_eight_in_front(quirks: Quirks) -> (Flown, usize) {
     let vector = Message::Vector(Vector::default()).encode();
     let eight = [(); 8].map(|()| chatter(0));
+    let mut alone = 0;
     let disturb = |wire: &mut Wire<'_>| {
         if wire.bytes.len() == vector.len() {
+            alone += 1;
             wire.precede_with(&eight);
         }
     };
     let flown = fly(quirks, on_the_way_back(disturb));
     assert_home(&flown);
-    flown
+    (flown, alone)
 }
 
 #[test]
 fn what_the_tenth_call_brings_is_lost_unless_the_stack_still_holds_it_or_the_app_looks() {
     let tenth = |flown: &Flown| vectors(&flown.dropped, DropReason::TenthMessage);
-    let lost = with_eight_in_front(Quirks::PUBLISHED);
-    // Once a second the camera's mode comes behind the vector.
-    assert!(
-        (VECTORS - 4..=VECTORS).contains(&tenth(&lost)),
-        "{}",
-        tenth(&lost)
-    );
+    let (lost, alone) = with_eight_in_front(Quirks::PUBLISHED);
+    // Once a second the camera's mode comes behind the vector, and where the pose is realigned a correction.
+    assert!(alone >= VECTORS / 2, "{alone}");
+    assert_eq!(tenth(&lost), alone);
     assert_eq!(lost.dropped.len(), tenth(&lost), "nothing else is lost");
-    let leftover = with_eight_in_front(published(|quirks| quirks.stack_leftovers = true));
+    let (leftover, _) = with_eight_in_front(published(|quirks| quirks.stack_leftovers = true));
     assert_eq!(leftover.dropped, []);
-    let used = with_eight_in_front(published(|quirks| quirks.drops_tenth_message = false));
+    let (used, _) = with_eight_in_front(published(|quirks| quirks.drops_tenth_message = false));
     assert_eq!(used.dropped, []);
 }
 
