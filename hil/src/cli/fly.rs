@@ -22,9 +22,6 @@ use crate::scenario::{
 };
 use crate::summary::{DirectionFigures, Summary};
 
-/// Share of late steps up to which a flight counts as one in real time.
-const MOST_LATE: f64 = 0.01;
-
 /// The board a flight is flown on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
@@ -144,6 +141,9 @@ pub struct Arguments {
     /// An image that is already built [default: this checkout's, built first]
     #[arg(long, value_name = "ELF")]
     firmware: Option<PathBuf>,
+    /// Per cent of the steps on the backend `board` that may begin more than 5 ms late
+    #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
+    late: f64,
 }
 
 /// What is to be flown, and on which board.
@@ -193,7 +193,7 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     };
     folder::write(&out, &flown).map_err(unwritable)?;
     console.status("Report", &out.join("report.html").display().to_string());
-    kept_step(&flown)?;
+    kept_step(&flown, arguments.late)?;
     if arguments.json {
         console.result(&serde_json::to_string(&flown.summary)?)?;
     } else {
@@ -242,9 +242,9 @@ fn on_board(
 }
 
 /// A flight against the clock that did not keep step with it is none.
-fn kept_step(flown: &Flown) -> Result<(), Failure> {
+fn kept_step(flown: &Flown, most_percent: f64) -> Result<(), Failure> {
     match &flown.summary.live {
-        Some(live) if live.pace.late_share > MOST_LATE => Err(format!(
+        Some(live) if 100.0 * live.pace.late_share > most_percent => Err(format!(
             "{:.1} % of the steps began late: this machine has too much else to do",
             100.0 * live.pace.late_share
         )
