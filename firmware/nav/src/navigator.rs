@@ -179,9 +179,7 @@ impl Navigator {
             step.report(Event::InvalidPose);
             return step;
         }
-        let seen_from = self
-            .motion
-            .seen_from(&self.parameters, now_ms, pose.position);
+        let seen_from = self.motion.seen_from(&self.parameters, pose.position);
         match &mut self.activity {
             Activity::Resting => {}
             Activity::Recording(recorder) => {

@@ -4,15 +4,16 @@ use nalgebra::{Point2, Vector2};
 
 use super::parameters::Parameters;
 
-/// Between two poses at most, milliseconds: two periods of STATE. What lies further apart tells no speed.
-const LONGEST_MS: u32 = 250;
+/// Between two STATE messages, seconds. The period and not the clock: what is decided follows from the
+/// messages alone, and is the same wherever they are heard.
+const PERIOD_S: f32 = 0.1;
 /// The fastest that this drone flies, metres a second; what looks faster is a correction of the estimate.
 const FASTEST_M_S: f32 = 1.5;
 
 /// The last pose that was told.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
-    last: Option<(u32, Point2<f32>)>,
+    last: Option<Point2<f32>>,
 }
 
 impl Motion {
@@ -24,25 +25,19 @@ impl Motion {
     pub(super) fn seen_from(
         &mut self,
         parameters: &Parameters,
-        now_ms: u32,
         position: Point2<f32>,
     ) -> Point2<f32> {
-        let last = self.last.replace((now_ms, position));
-        position - velocity(last, now_ms, position) * parameters.view_age_s
+        let last = self.last.replace(position);
+        position - velocity(last, position) * parameters.view_age_s
     }
 }
 
 /// Metres a second.
-fn velocity(last: Option<(u32, Point2<f32>)>, now_ms: u32, position: Point2<f32>) -> Vector2<f32> {
-    let Some((last_ms, last)) = last else {
-        return Vector2::zeros();
-    };
-    let elapsed_ms = now_ms.wrapping_sub(last_ms);
-    let elapsed_s = elapsed_ms as f32 * 0.001;
-    let way = position - last;
-    // Written so that NaN and a clock that stands still are no speed.
-    if elapsed_ms <= LONGEST_MS && way.norm() < FASTEST_M_S * elapsed_s {
-        way / elapsed_s
+fn velocity(last: Option<Point2<f32>>, position: Point2<f32>) -> Vector2<f32> {
+    let way = last.map_or_else(Vector2::zeros, |last| position - last);
+    // Written so that NaN is no speed.
+    if way.norm() < FASTEST_M_S * PERIOD_S {
+        way / PERIOD_S
     } else {
         Vector2::zeros()
     }
@@ -55,34 +50,30 @@ mod tests {
     const PARAMETERS: Parameters = Parameters::DEFAULT;
 
     /// How far behind the second of two poses its view was seen from, metres.
-    fn behind(elapsed_ms: u32, way_m: f32) -> f32 {
-        // Shortly before the clock wraps.
-        let began_ms = u32::MAX - 20;
+    fn behind(way_m: f32) -> f32 {
         let mut motion = Motion::new();
-        motion.seen_from(&PARAMETERS, began_ms, Point2::origin());
+        motion.seen_from(&PARAMETERS, Point2::origin());
         let here = Point2::new(way_m, 0.0);
-        let seen_from = motion.seen_from(&PARAMETERS, began_ms.wrapping_add(elapsed_ms), here);
+        let seen_from = motion.seen_from(&PARAMETERS, here);
         assert!(seen_from.y == 0.0);
         here.x - seen_from.x
     }
 
     #[test]
     fn a_drone_in_flight_is_ahead_of_what_it_sees() {
-        let half_a_metre_a_second = behind(100, 0.05);
+        let half_a_metre_a_second = behind(0.05);
         assert!((half_a_metre_a_second - 0.5 * PARAMETERS.view_age_s).abs() < 1e-6);
-        assert_eq!(behind(100, 0.0), 0.0);
+        assert_eq!(behind(0.0), 0.0);
     }
 
     #[test]
-    fn a_correction_of_the_estimate_is_no_flight_and_neither_is_a_pause() {
-        assert_eq!(behind(100, 0.5), 0.0);
-        assert_eq!(behind(5_000, 0.5), 0.0);
-        assert_eq!(behind(0, 0.5), 0.0);
+    fn a_correction_of_the_estimate_is_no_flight() {
+        assert_eq!(behind(0.5), 0.0);
     }
 
     #[test]
     fn the_first_view_was_seen_from_here() {
         let here = Point2::new(3.0, 4.0);
-        assert_eq!(Motion::new().seen_from(&PARAMETERS, 7, here), here);
+        assert_eq!(Motion::new().seen_from(&PARAMETERS, here), here);
     }
 }
