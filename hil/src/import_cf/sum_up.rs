@@ -12,14 +12,10 @@ use crate::summary::Summary;
 /// flights are held to.
 const HOME_M: f64 = 0.5;
 
-/// Steps in which the length of a path is measured, m. The estimate trembles by some millimetres from row to row, which
-/// adds up to a fifth of a slow flight.
-const STEP_M: f64 = 0.1;
-
 /// The figures, by the drone's own estimate.
 pub fn summary(tables: &[Table], recording: &Recording, wall: Duration) -> Summary {
     let (outbound, inbound) = metrics::paths(recording);
-    let outbound_m = length(&outbound);
+    let outbound_m = metrics::length_in_steps(&outbound);
     let memory_bytes = recording.memory().with_counts();
     // The filter's origin is where it was reset before take-off.
     let home = PlanarPose::default();
@@ -35,7 +31,7 @@ pub fn summary(tables: &[Table], recording: &Recording, wall: Duration) -> Summa
         homing: homing(recording),
         spacing_m: f64::NAN,
         outbound_m,
-        inbound_m: length(&inbound),
+        inbound_m: metrics::length_in_steps(&inbound),
         home_error_m,
         cross_track_rms_m: metrics::cross_track_rms(&inbound, &outbound),
         odometry_only_error_m: f64::NAN,
@@ -53,21 +49,6 @@ pub fn summary(tables: &[Table], recording: &Recording, wall: Duration) -> Summa
         // Frames, processor and image: the logs know nothing of the board.
         ..Summary::default()
     }
-}
-
-/// Length of a path whose points tremble, metres.
-fn length(path: &[PlanarPose]) -> f64 {
-    let mut steps: Vec<PlanarPose> = Vec::new();
-    for pose in path {
-        if steps
-            .last()
-            .is_none_or(|last| last.distance(pose) >= STEP_M)
-        {
-            steps.push(*pose);
-        }
-    }
-    // The sum of nothing is minus zero.
-    metrics::length(&steps) + 0.0
 }
 
 fn outcome(led: bool, home_error_m: f64) -> String {
@@ -93,28 +74,5 @@ fn homing(recording: &Recording) -> &'static str {
         (true, false) => "sequence",
         (false, true) => "odometry",
         _ => "both",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(x: f64, y: f64) -> PlanarPose {
-        PlanarPose { x, y, yaw: 0.0 }
-    }
-
-    #[test]
-    fn trembling_adds_nothing_to_a_length() {
-        let tremble = |step: i32| 0.004 * f64::from(step % 2);
-        let path: Vec<PlanarPose> = (0..=200)
-            .map(|step| at(0.01 * f64::from(step), tremble(step)))
-            .collect();
-        assert!((length(&path) - 2.0).abs() < 0.01);
-    }
-
-    #[test]
-    fn the_length_of_nothing_is_zero_without_a_sign() {
-        assert!(length(&[]).is_sign_positive());
     }
 }
