@@ -23,7 +23,7 @@ pub(super) struct HomingRun {
     reach_m: f32,
     /// The farthest turn that is believed, radians.
     turn_limit: f32,
-    /// So many vectors are needed.
+    /// Vectors needed before what is seen is trusted.
     least_vectors: u16,
     /// The low-passed set-point.
     target: Point2<f32>,
@@ -72,7 +72,7 @@ impl HomingRun {
         }
     }
 
-    /// The same from farther away.
+    /// The same, with as much more reach as the target is away from the fallback at the beginning.
     pub(super) fn reaching_out(mut self) -> Self {
         self.reach_m += (self.target - self.fallback).norm();
         self
@@ -158,7 +158,7 @@ impl HomingRun {
         }
     }
 
-    /// By how far away odometry has the snapshot.
+    /// The settings of homing, by how far away odometry has the snapshot.
     fn homing(&self, parameters: &Parameters, pose: &Pose) -> HomingParameters {
         if (pose.position - self.fallback).norm() > parameters.far_m {
             parameters.homing.seen_from_afar()
@@ -259,7 +259,7 @@ impl HomingRun {
     }
 }
 
-/// The vector, of a turn that is believed.
+/// The homing vector of a view, or why there is none: a turn beyond the limit is not believed.
 fn vector(
     homing: HomingParameters,
     turn_limit: f32,
@@ -277,7 +277,7 @@ fn vector(
     Ok(vector)
 }
 
-/// Whether a view is of another place than the snapshot; one of which that cannot be told is not.
+/// Whether a view is of another place than the snapshot. False where the views cannot be compared.
 pub(super) fn is_of_another_place(
     parameters: &Parameters,
     stored: &StoredView,

@@ -4,8 +4,8 @@ use nalgebra::{Point2, Vector2};
 
 use super::parameters::Parameters;
 
-/// Between two STATE messages, seconds. The period and not the clock: what is decided follows from the
-/// messages alone, and is the same wherever they are heard.
+/// Between two STATE messages, seconds. The nominal period and not the clock: so what is decided follows
+/// from the messages alone, and the same messages lead to the same decisions on every board.
 const PERIOD_S: f32 = 0.1;
 /// The fastest that this drone flies, metres a second; what looks faster is a correction of the estimate.
 const FASTEST_M_S: f32 = 1.5;
@@ -32,7 +32,8 @@ impl Motion {
     }
 }
 
-/// Metres a second.
+/// Velocity of a drone that came to `position` from the last pose, metres a second: zero where there is none,
+/// or where it is too far away to have been flown from.
 fn velocity(last: Option<Point2<f32>>, position: Point2<f32>) -> Vector2<f32> {
     let way = last.map_or_else(Vector2::zeros, |last| position - last);
     // Written so that NaN is no speed.

@@ -34,16 +34,17 @@ pub struct Parameters {
     pub simplify_tolerance_m: f32,
     /// A point of the route counts as reached within this distance.
     pub acceptance_radius_m: f32,
-    /// The distance R of the surroundings, metres of one unit of the homing vector, as long as nothing tells
-    /// of it.
+    /// The distance R of the surroundings, which is one unit of the homing vector, until the way flown has
+    /// measured it.
     pub environment_radius_m: f32,
-    /// The least and the greatest R that the way flown may tell.
+    /// The least and the greatest R that the way flown may give.
     pub environment_bounds_m: (f32, f32),
-    /// How much that counts against the first: the variance of a vector over that of 1/R between places, m².
+    /// Weight of that first R against the way flown: the variance of a vector over that of 1/R between
+    /// places, m².
     pub environment_prior_m2: f32,
-    /// So many vectors tell R: those of the approach.
+    /// R is measured by this many vectors of a run: those of the approach.
     pub measuring_vectors: f32,
-    /// So many vectors count in the fit of a snapshot's place.
+    /// A snapshot's place is the mean of about this many of the newest vectors.
     pub fitted_vectors: f32,
     /// Bound of the set-point's distance while homing.
     pub homing_step_m: f32,
@@ -61,7 +62,8 @@ pub struct Parameters {
     pub arrival_radius_m: f32,
     /// Homing vectors needed before homing may end early or realign the pose.
     pub least_vectors: u16,
-    /// The same at a snapshot of a visual sequence; and to go there where one was searched for.
+    /// The same at a snapshot of a visual sequence; and before a snapshot that was searched for counts as
+    /// found.
     pub few_vectors: u16,
     /// After a realignment, how far the drone's heading may be off at the next snapshot however near that
     /// is, radians.
@@ -94,11 +96,11 @@ pub struct Parameters {
     pub realignment_interval_ms: u32,
     /// At home: time between two MAP messages that say so.
     pub home_period_ms: u32,
-    /// How old a view is when a step looks at it, seconds, in the mean.
+    /// Mean age of a view when a step looks at it, seconds.
     pub view_age_s: f32,
     /// Fourier homing.
     pub homing: HomingParameters,
-    /// Farther than this from where odometry has the snapshot it is that from afar.
+    /// Farther than this from where odometry has the snapshot, homing is that from afar.
     pub far_m: f32,
 }
 
@@ -109,12 +111,12 @@ impl Parameters {
     /// - Snapshots every 2 m: paper, "Route following"; with it the U route of 56 m takes 0.65 kB. A
     ///   visual sequence needs 0.25 m: paper, Fig. 6C.
     /// - Acceptance 0.2 m: two STATE periods of flight at 1 m/s. Homing starts that near.
-    /// - R 1.5 m: in rooms of 10 m, 1 m homes too slowly, 4 m too nervously. What the way flown tells of it
-    ///   is 1.5 m in the rig's corridors, 3 to 7 m in its halls and 5 to 15 m in its forest; beyond 6 m the noise
-    ///   of a vector would lead half as far as the next snapshot is. 1/R differs by
-    ///   0.3 /m between them, and a vector is off by 0.02: (0.02/0.3)² m². Two seconds of
-    ///   vectors for R; for the place all of a stay at home, so that a view that is a little off does not lead a
-    ///   drone that hovers farther and farther away.
+    /// - R 1.5 m: in rooms of 10 m, 1 m homes too slowly, 4 m too nervously. The way flown gives 1.5 m in
+    ///   the rig's corridors, 3 to 7 m in its halls and some 10 m in its forest; 6 m at most, because with
+    ///   more the noise of a vector would lead half as far as the next snapshot is. 1/R differs by 0.3 /m
+    ///   between them, and a vector is off by 0.02: (0.02/0.3)² m². Two seconds of vectors for R; for the
+    ///   place all of a stay at home, so that a view that is a little off does not lead a drone that hovers
+    ///   farther and farther away.
     /// - Homing step 0.3 m and smoothing 0.3: pitch and roll stay small, so that the horizon stays in
     ///   the picture.
     /// - 3 s at a snapshot: the paper replaced its 10-frame rule by a time-out of unknown length; 2 to

@@ -1,8 +1,8 @@
-//! Where a snapshot was taken, by all vectors of a homing run: the way flown is the ruler.
+//! Where a snapshot was taken, from all vectors of a homing run: odometry gives them their scale.
 //!
 //! A homing vector is in units of the surroundings' distance R, which nobody knows: 1.5 m in a corridor,
 //! 7 m in a hall, 10 m between trees. But the drone moves while it homes, and odometry tells by how much.
-//! Of a snapshot at s, the vector at p is
+//! The vector that a drone at p sees to a snapshot taken at s is
 //!
 //! ```text
 //! h = κ (s - p),   κ = 1 / R
@@ -10,15 +10,16 @@
 //!
 //! a straight line in p whose slope -κ and root s are fitted by least squares, with a prior for κ that
 //! counts while the drone has hardly moved. κ is fitted to the approach alone: a drone that hovers goes
-//! where the noise of its vectors leads, and would take that for a slope. s stands still in the coordinates of the estimate while the
-//! drone moves: other than a low-pass of the vectors it does not lag behind.
+//! where the noise of its vectors leads, and would take that for a slope. s stands still in the
+//! coordinates of the estimate while the drone moves: unlike a low-pass of the vectors, the fit does not
+//! lag behind.
 
 use nalgebra::{Point2, Vector2};
 
 use super::parameters::Parameters;
 use crate::homing::HomingVector;
 
-/// A vector longer than this share of its bound was clipped, and tells a direction alone.
+/// A vector longer than this share of its bound counts as clipped, and tells a direction alone.
 const CLIPPED: f32 = 0.95;
 
 /// The fit: means and mean squares of the newest vectors.
@@ -51,8 +52,8 @@ impl PlaceFit {
         }
     }
 
-    /// The same and one more vector. One that was clipped is no part of a straight line, and the fit begins
-    /// anew with it.
+    /// The fit with one more vector. A clipped one lies on no straight line with the others, and the fit
+    /// begins anew with it.
     pub(super) fn and(
         mut self,
         parameters: &Parameters,
@@ -94,7 +95,7 @@ impl PlaceFit {
         self.rotation
     }
 
-    /// R, metres.
+    /// R, metres: 1/κ of the fit, within its bounds.
     fn radius_m(&self, parameters: &Parameters) -> f32 {
         let (nearest_m, farthest_m) = parameters.environment_bounds_m;
         let measured = self.vectors.min(parameters.measuring_vectors);

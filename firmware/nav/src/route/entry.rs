@@ -1,4 +1,4 @@
-//! Where beside the stored way a drone stands, and the end of the way that it leaves out from there.
+//! Where a drone beside the stored way joins it: the part of the way beyond that point is left out.
 
 use nalgebra::Point2;
 
@@ -14,21 +14,21 @@ pub(crate) struct Entry {
     at: Option<Cut>,
 }
 
-/// A point on a vector.
+/// A point on a vector of the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cut {
-    /// Vectors below that one.
+    /// Vectors on the stack below that vector.
     below: usize,
-    /// How much of it lies beyond the point, 0..=1.
+    /// Share of the vector that lies beyond the point, 0..=1.
     beyond: f32,
 }
 
 impl Route {
-    /// Where a drone that is `here` goes on along the way: at the nearest point of it, where each metre of the
-    /// way from there to its end makes a point farther by `drift`, metres.
+    /// Where a drone that is `here` joins the way: at the point with the least sum of its distance and
+    /// `drift` times the way from it to the route's end, metres.
     ///
-    /// The estimate has drifted along that way when it was recorded. Where the way crosses itself, or was flown
-    /// to and fro, the part that was flown last is therefore the one to be trusted. A way home that is
+    /// The estimate has drifted along that way when it was recorded. Where the way crosses itself, or was
+    /// flown to and fro, the part that was flown last is therefore the one to be trusted. A way home that is
     /// longer than it might be leads home; a shortcut to a place where the drone is not does not.
     pub(crate) fn entry(&self, here: Point2<f32>, drift: f32) -> Entry {
         let mut upper = self.tip;
@@ -82,8 +82,8 @@ impl Route {
         self.snapshots.drop_above(highest);
     }
 
-    /// The distance of a place from the way that leads from a point back by a vector (`sign` 1) or onward by it
-    /// (-1), metres, and the share of the vector up to the nearest point.
+    /// The distance of a place from the straight way that leads from a point back by a vector (`sign` 1) or
+    /// onward by it (-1), metres, and the share of the vector up to the nearest point.
     #[inline(never)] // Flash counts more than cycles here.
     fn nearest(
         &self,

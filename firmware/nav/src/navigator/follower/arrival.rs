@@ -105,7 +105,7 @@ impl Follower {
         // Without odometry nobody knows where the snapshot was taken, but the heading is known.
         let estimate = context.pose.position;
         let recorded = recorded_position(context.route);
-        // What is left of the way there is not flown any more, but known.
+        // The drone leaves short of the snapshot, but knows how far: that counts in its true place.
         let here = recorded
             .zip(run.place(context.parameters))
             .map_or(estimate, |(recorded, place)| recorded + (estimate - place));
@@ -123,7 +123,7 @@ impl Follower {
         self.other_places = 0;
         self.unseen_m = 0.0;
         self.heading_is_known = true;
-        // The next leg makes up for what is left; home is where homing has led to.
+        // The next leg begins at the snapshot and makes up for that; home is where homing has led to.
         let at = if context.route.is_empty() {
             here
         } else {

@@ -1,14 +1,14 @@
-//! Onto the route, from wherever beside it the drone stands.
+//! Joining the route from wherever beside it the drone stands.
 
 use super::Context;
 use crate::navigator::spacing::Drift;
 use crate::route::VECTOR_SPACING_M;
 
-/// Lets the route end where the drone is: what lies beyond is forgotten. False where it is not beside the
-/// route: farther from it than homing finds a snapshot, along a way that nobody has flown.
+/// Lets the route end beside the drone: what lies beyond is forgotten. False where the drone is farther from
+/// the route than homing finds a snapshot, and nobody has flown the way there.
 ///
-/// A drone that has just ended recording is at the end of the route, as far as vectors resolve the way. Nobody knows
-/// where a visual sequence ends: homing finds its last snapshot or does not.
+/// A drone that has just ended recording is at the end of the route, as far as vectors resolve the way.
+/// Nobody knows where a visual sequence ends: homing finds its last snapshot or does not.
 pub(super) fn enter(context: &mut Context) -> bool {
     let Context {
         parameters, route, ..
