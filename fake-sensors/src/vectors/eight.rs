@@ -1,4 +1,4 @@
-//! Eight numbers side by side, and which of eight things a condition holds for.
+//! Eight numbers side by side (SIMD), and for which of them a condition holds.
 //!
 //! Every operation is eight times that of one number, in plain loops that the compiler turns into one
 //! instruction where the processor has it: the bits are those of one number at a time.
@@ -6,7 +6,7 @@
 use core::array::from_fn;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
-/// How many.
+/// How many numbers.
 pub const LANES: usize = 8;
 
 /// Eight numbers.
@@ -14,12 +14,12 @@ pub const LANES: usize = 8;
 #[repr(align(32))]
 pub struct Eight(pub [f32; LANES]);
 
-/// Eight answers: all ones for a yes, as a comparison of several numbers at once gives them.
+/// For which of eight numbers a comparison holds: all bits of a lane are ones there, else zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(32))]
-pub struct Answers([u32; LANES]);
+pub struct Mask([u32; LANES]);
 
-/// Some of eight things: a bit each, the first in the lowest.
+/// Some of the eight lanes: a bit each, the first in the lowest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subset(u8);
 
@@ -42,13 +42,13 @@ impl Eight {
         self.each(f32::sqrt)
     }
 
-    /// The larger of two, the other of one that is no number.
+    /// The larger of two; where one of them is NaN, the other.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         self.with(other, f32::max)
     }
 
-    /// The smaller of two, the other of one that is no number.
+    /// The smaller of two; where one of them is NaN, the other.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
         self.with(other, f32::min)
@@ -74,23 +74,14 @@ impl Eight {
 
     /// Whether each is above the other.
     #[inline(always)]
-    pub fn above(self, other: Self) -> Answers {
-        Answers(from_fn(|lane| answer(self.0[lane] > other.0[lane])))
+    pub fn above(self, other: Self) -> Mask {
+        Mask(from_fn(|lane| ones(self.0[lane] > other.0[lane])))
     }
 
     /// Whether each is below the other.
     #[inline(always)]
-    pub fn below(self, other: Self) -> Answers {
+    pub fn below(self, other: Self) -> Mask {
         other.above(self)
-    }
-
-    /// These where the answer is yes, the others where it is no.
-    #[inline(always)]
-    pub fn or(self, answers: Answers, others: Self) -> Self {
-        Self(from_fn(|lane| {
-            let (yes, no) = (self.0[lane].to_bits(), others.0[lane].to_bits());
-            f32::from_bits(yes & answers.0[lane] | no & !answers.0[lane])
-        }))
     }
 
     #[inline(always)]
@@ -141,15 +132,25 @@ impl Neg for Eight {
     }
 }
 
+/// All bits of a lane where a condition holds.
 #[inline(always)]
-fn answer(yes: bool) -> u32 {
-    u32::from(yes).wrapping_neg()
+fn ones(holds: bool) -> u32 {
+    u32::from(holds).wrapping_neg()
 }
 
-impl Answers {
-    /// Those with a yes.
+impl Mask {
+    /// `these` where the comparison holds, `others` elsewhere.
     #[inline(always)]
-    pub fn yes(self) -> Subset {
+    pub fn select(self, these: Eight, others: Eight) -> Eight {
+        Eight(from_fn(|lane| {
+            let (these, others) = (these.0[lane].to_bits(), others.0[lane].to_bits());
+            f32::from_bits(these & self.0[lane] | others & !self.0[lane])
+        }))
+    }
+
+    /// The lanes where the comparison holds.
+    #[inline(always)]
+    pub fn lanes(self) -> Subset {
         let [a, b, c, d, e, f, g, h] = self.0;
         Subset(signs([a, b, c, d]) | signs([e, f, g, h]) << 4)
     }
@@ -175,7 +176,7 @@ fn signs(words: [u32; 4]) -> u8 {
         .fold(0, |bits, word| bits << 1 | (word >> 31) as u8)
 }
 
-impl BitAnd for Answers {
+impl BitAnd for Mask {
     type Output = Self;
 
     #[inline(always)]
@@ -190,7 +191,7 @@ impl Subset {
     /// Each of them.
     pub const ALL: Self = Self(!0);
 
-    /// The one at `place`, below [`LANES`].
+    /// The lane `place`, below [`LANES`], alone.
     #[inline(always)]
     pub fn only(place: usize) -> Self {
         Self(1 << place)
@@ -256,9 +257,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_subset_lists_those_with_a_yes_in_order() {
+    fn a_subset_lists_its_lanes_in_order() {
         let numbers = Eight([3.0, -1.0, 4.0, -1.0, 5.0, -9.0, 2.0, 6.0]);
-        let positive = numbers.above(Eight::all(0.0)).yes();
+        let positive = numbers.above(Eight::all(0.0)).lanes();
         assert_eq!(positive.iter().collect::<Vec<_>>(), [0, 2, 4, 6, 7]);
         let early = positive & Subset::first(5);
         assert_eq!(early.iter().collect::<Vec<_>>(), [0, 2, 4]);
@@ -267,13 +268,13 @@ mod tests {
     }
 
     #[test]
-    fn the_answers_choose_between_two_numbers_each() {
+    fn a_mask_selects_one_of_two_numbers_in_each_lane() {
         let (a, b) = (
             Eight([1.0, 5.0, 3.0, 0.0, 9.0, 2.0, 7.0, 8.0]),
             Eight::all(4.0),
         );
-        assert_eq!(a.or(a.above(b), b), a.max(b));
-        assert_eq!(a.or(a.below(b), b), a.min(b));
+        assert_eq!(a.above(b).select(a, b), a.max(b));
+        assert_eq!(a.below(b).select(a, b), a.min(b));
         assert_eq!((a.larger(b), a.smaller(b)), (a.max(b), a.min(b)));
     }
 }

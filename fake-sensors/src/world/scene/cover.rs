@@ -56,7 +56,7 @@ impl<'a> Covers<'a> {
         }
     }
 
-    /// The same again.
+    /// Nothing yet, again; nothing beyond `limit_m` counts.
     #[inline(always)]
     fn begin(&mut self, limit_m: f32) {
         self.kept.clear();
@@ -126,7 +126,7 @@ impl<'a> Covers<'a> {
     }
 }
 
-/// What the pixels of a fan see: kept from one fan to the next, for that is quicker than to make it anew.
+/// What the pixels of a fan see. It is kept from one fan to the next, which is quicker than to make it anew.
 #[derive(Clone, Debug)]
 pub struct Pixels<'a> {
     covers: [Covers<'a>; LANES],
@@ -145,7 +145,7 @@ impl<'a> Pixels<'a> {
         }
     }
 
-    /// Nothing yet in `all` that there are; nothing beyond `limits_m` counts.
+    /// Nothing yet in the pixels `all`, those of the fan that there are; nothing beyond `limits_m` counts.
     #[inline(always)]
     pub(super) fn begin(&mut self, limits_m: Eight, all: Subset) {
         for (covers, limit_m) in self.covers.iter_mut().zip(limits_m.0) {

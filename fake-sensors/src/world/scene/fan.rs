@@ -1,8 +1,8 @@
 //! Several rays from one point at once: which surface each meets first.
 //!
 //! The rays lie side by side in arrays, so that the compiler tests a surface against all of them with
-//! a few instructions each. Ray by ray the arithmetic, and so the result, is that of
-//! one that comes alone.
+//! a few instructions each. For each ray the arithmetic, and so the result, is that of a ray that comes
+//! alone.
 
 use nalgebra::{Rotation3, Vector3};
 

@@ -8,6 +8,7 @@ pub mod light;
 pub mod motion;
 pub mod panorama;
 pub mod ray;
+mod shading;
 #[cfg(test)]
 pub mod simple;
 pub mod sky;
@@ -22,25 +23,20 @@ use super::paint::Tile;
 use crate::vectors::eight::{Eight, Subset};
 use crate::vectors::{self, Kernel};
 use bvh::Bvh;
-use cover::{Cover, Covers, Pixels, Sight};
+use cover::{Covers, Pixels, Sight};
 use fan::{Directions, FAN, Fan};
-use haze::Haze;
 use light::Curve;
 use motion::Path;
 use panorama::Panorama;
 use ray::{Aperture, Ray, Rays};
 use sky::Sky;
-use solid::{Form, Solid};
+use solid::Solid;
 use surface::{SeenSurface, Surface};
 
 /// Lights of a world at most, with the one that never changes.
 pub const MAX_LIGHTS: usize = 8;
 /// Index of the light that never changes.
 pub const STEADY: u8 = 0;
-/// Radiance where nothing is.
-const NOTHING: f32 = 0.0;
-/// Share of the overhead light that reaches a face that looks down.
-const FROM_BELOW: f32 = 0.35;
 
 /// What a solid is made of.
 #[derive(Clone, Debug)]
@@ -171,7 +167,7 @@ impl Mover {
 }
 
 impl Moved {
-    /// Which of the widening rays pass through the ball round the thing.
+    /// Which of the rays, as wide as they become, pass through the ball round the thing.
     #[inline(always)]
     fn near(&self, rays: &Rays) -> Subset {
         let to_centre = self.centre - rays.origin;
@@ -183,7 +179,7 @@ impl Moved {
             .map(|axis| Eight::all(to_centre[axis]) - rays.direction[axis] * ahead_m)
             .map(|aside_m| aside_m * aside_m);
         let beside = (aside_m[0] + aside_m[1] + aside_m[2]).above(reach_m * reach_m);
-        Subset::ALL.without(beside.yes())
+        Subset::ALL.without(beside.lanes())
     }
 }
 
@@ -196,8 +192,8 @@ impl Viewpoint<'_> {
         self.radiances(&directions, &[*aperture; FAN], 1, &mut Pixels::none())[0]
     }
 
-    /// [`Self::radiance`] of the first `count` of several directions, which is quicker than one by one;
-    /// what is in `pixels` before does not matter.
+    /// [`Self::radiance`] of the first `count` of several directions, which is quicker than one by one.
+    /// `pixels` is room to work in: what it holds before does not matter.
     #[must_use]
     #[inline(always)]
     pub fn radiances<'v>(
@@ -286,6 +282,7 @@ impl Viewpoint<'_> {
         });
     }
 
+    /// Adds a solid to those of the pixels `of` a fan that it covers a part of.
     #[inline(always)]
     fn offer<'a>(&'a self, rays: &Rays, of: Subset, solid: &'a Solid, pixels: &mut Pixels<'a>) {
         let Some((touches, met)) = solid.touch(rays, pixels.limits_m()) else {
@@ -302,7 +299,7 @@ impl Viewpoint<'_> {
             let visible = Eight::all(1.0) - touches.half_width_m / touches.reach_m;
             let edge = (touches.depth_m - touches.half_width_m).below(reach_m);
             let none = Eight::all(0.0);
-            let bulges = met & (reach_m.above(none) & visible.above(none) & edge).yes();
+            let bulges = met & (reach_m.above(none) & visible.above(none) & edge).lanes();
             let most_m = visible * reach_m;
             for ray in bulges.iter() {
                 let (distance_m, half_width_m) =
@@ -314,82 +311,9 @@ impl Viewpoint<'_> {
         let shares = touches.shares(shifts_m);
         pixels.add(Sight::Solid(solid), met, touches.distance_m, shares);
     }
-
-    /// How far a ragged outline lies outside (to 1) or inside (to -1) of the solid's own where the
-    /// ray passes: foliage bulges where it is light.
-    #[inline(always)]
-    fn bulge(&self, solid: &Solid, point: &Vector3<f32>, footprint_m: f32) -> f32 {
-        let tile = &self.scene.materials[usize::from(solid.material)].tile;
-        let (u, v) = on_tile(solid, point);
-        let light = tile.sample(u, v, footprint_m) / tile.mean();
-        (light - 1.0).clamp(-1.0, 1.0)
-    }
-
-    /// Radiance of what covers a part of a pixel.
-    #[inline(always)]
-    fn shade(&self, ray: &Ray, cover: &Cover<'_>) -> f32 {
-        match cover.sight {
-            Sight::Solid(solid) => self.shade_solid(ray, solid, cover.distance_m),
-            Sight::Haze(haze) => self.shade_haze(ray, haze),
-        }
-    }
-
-    #[inline(always)]
-    fn shade_solid(&self, ray: &Ray, solid: &Solid, distance_m: f32) -> f32 {
-        let material = &self.scene.materials[usize::from(solid.material)];
-        let level = material.gain * self.levels[usize::from(material.light)];
-        if material.shines {
-            return level;
-        }
-        let point = ray.at(distance_m);
-        let (u, v) = on_tile(solid, &point);
-        let footprint_m = 2.0 * ray.half_mean * distance_m;
-        let normal = solid.normal(&point);
-        let facing = self.sunlight_towards().dot(&normal).max(0.0);
-        let light = self.light_on(facing, normal.z);
-        level * light * material.tile.sample(u, v, footprint_m)
-    }
-
-    /// Light on the visible half of a ball: its mean over the disc. The sun's part is a parabola
-    /// through Lambert's sphere at full, half and new phase (2/3, 2/(3 pi), 0).
-    #[inline(always)]
-    fn shade_haze(&self, ray: &Ray, haze: &Haze) -> f32 {
-        let phase = -ray.direction.dot(&self.sunlight_towards());
-        let facing = 0.212 + phase * (0.333 + phase * 0.121);
-        let upward = -2.0 / 3.0 * ray.direction.z;
-        self.levels[usize::from(haze.light)] * haze.radiance * self.light_on(facing, upward)
-    }
-
-    /// Light on a face that sees the sun under a cosine of `facing` and looks up by `upward`.
-    #[inline(always)]
-    fn light_on(&self, facing: f32, upward: f32) -> f32 {
-        let above = FROM_BELOW + (1.0 - FROM_BELOW) * (0.5 + 0.5 * upward);
-        match &self.scene.sunlight {
-            Some(sun) => sun.share * facing + (1.0 - sun.share) * above,
-            None => above,
-        }
-    }
-
-    #[inline(always)]
-    fn sunlight_towards(&self) -> Vector3<f32> {
-        let sun = self.scene.sunlight.as_ref();
-        sun.map_or_else(Vector3::zeros, |sun| sun.towards)
-    }
-
-    fn dome(&self, direction: &Vector3<f32>, width_rad: f32) -> f32 {
-        match &self.scene.dome {
-            Dome::Nothing => NOTHING,
-            Dome::Sky(sky, light) => {
-                self.levels[usize::from(*light)] * sky.radiance(direction, width_rad)
-            }
-            Dome::Panorama(picture, light) => {
-                self.levels[usize::from(*light)] * picture.radiance(direction, width_rad)
-            }
-        }
-    }
 }
 
-/// Adds to the pixels of a fan what covers them: what moves, then what stands.
+/// The inner loop of [`Viewpoint::cover`]: first what moves, then what stands.
 struct Covering<'c, 'v> {
     viewpoint: &'v Viewpoint<'v>,
     rays: &'c Rays,
@@ -424,30 +348,5 @@ impl Kernel for Covering<'_, '_> {
                 viewpoint.offer(rays, of, solid, pixels);
             }
         }
-    }
-}
-
-/// Where on its material's tile a point of a solid lies: seen along that of the solid's axes which
-/// its face is turned to most. Furrows run straight up.
-#[inline(always)]
-fn on_tile(solid: &Solid, point: &Vector3<f32>) -> (f32, f32) {
-    let out = point - solid.centre;
-    let [x, y] = match solid.form {
-        Form::Block([cos, sin]) => [cos * out.x + sin * out.y, cos * out.y - sin * out.x],
-        Form::Column | Form::Ball => [out.x, out.y],
-    };
-    // Two solids of one material differ: each has its own place on the tile.
-    let place = 7.3 * solid.centre.x + 3.1 * solid.centre.y;
-    let [along_x, along_y, along_z] = [
-        (x / solid.half.x).abs(),
-        (y / solid.half.y).abs(),
-        (out.z / solid.half.z).abs(),
-    ];
-    if along_z > along_x.max(along_y) && solid.form != Form::Column {
-        (x + place, y)
-    } else if along_x > along_y {
-        (y + place, out.z)
-    } else {
-        (x + place, out.z)
     }
 }

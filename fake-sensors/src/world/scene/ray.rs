@@ -123,7 +123,7 @@ impl Rays {
 /// 1 / `x`, finite for all `x`.
 #[inline(always)]
 pub fn inverse(x: Eight) -> Eight {
-    let finite = x.abs().below(Eight::all(TINY));
+    let too_small = x.abs().below(Eight::all(TINY));
     let tiny = Eight(x.0.map(|x| TINY.copysign(x)));
-    Eight::all(1.0) / tiny.or(finite, x)
+    Eight::all(1.0) / too_small.select(tiny, x)
 }

@@ -1,4 +1,5 @@
-//! What one ray sees, number by number: what a fan of them is held against.
+//! The renderer for one ray at a time, in plain scalar code. Tests hold the fans of rays, which go through a scene
+//! together, against it: to the bit.
 
 use core::f32::consts::FRAC_PI_4;
 
@@ -8,8 +9,9 @@ use super::bvh::{BLURRED, Bvh, Child, Node};
 use super::cover::{Cover, Covers, Sight};
 use super::fan::{Directions, FAN, Fan};
 use super::ray::{Aperture, Ray};
+use super::shading::on_tile;
 use super::solid::{Form, Solid};
-use super::{Moved, Viewpoint, on_tile};
+use super::{Moved, Viewpoint};
 
 /// A component of a direction that is nearer to 0 counts as this.
 const TINY: f32 = 1e-9;
@@ -21,7 +23,7 @@ struct Wide {
     half_up: f32,
 }
 
-/// How it meets a solid: the terms of `Touches`.
+/// How it meets a solid: one ray's part of `Touches`.
 struct Touch {
     distance_m: f32,
     half_width_m: f32,

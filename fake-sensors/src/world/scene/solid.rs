@@ -11,7 +11,7 @@ use core::f32::consts::FRAC_PI_4;
 use nalgebra::Vector3;
 
 use super::ray::{Rays, inverse};
-use crate::vectors::eight::{Answers, Eight, Subset};
+use crate::vectors::eight::{Eight, Mask, Subset};
 
 /// The form of a solid within its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,20 +84,20 @@ impl Solid {
 
     /// Those of the rays for which the solid is `ahead` that meet it.
     #[inline(always)]
-    fn met(&self, touches: &Touches, ahead: Answers, limits_m: Eight) -> Subset {
+    fn met(&self, touches: &Touches, ahead: Mask, limits_m: Eight) -> Subset {
         let none = Eight::all(0.0);
         let margin_m = touches.half_width_m + touches.reach_m * self.ragged;
         let met = (touches.depth_m + margin_m).above(none)
             & touches.other_share.above(none)
             & touches.distance_m.below(limits_m)
             & ahead;
-        met.yes()
+        met.lanes()
     }
 
     /// In the vertical plane through ray and axis nothing changes sideways: the level overlap is that
     /// of two intervals, and so is the upright one.
     #[inline(always)]
-    fn touch_column(&self, rays: &Rays) -> Option<(Touches, Answers)> {
+    fn touch_column(&self, rays: &Rays) -> Option<(Touches, Mask)> {
         let radius_m = self.half.x;
         let squared = Eight::all(radius_m * radius_m);
         let to_axis = self.centre - rays.origin;
@@ -123,7 +123,7 @@ impl Solid {
 
     /// Scaled upwards so that it becomes a sphere.
     #[inline(always)]
-    fn touch_ball(&self, rays: &Rays) -> Option<(Touches, Answers)> {
+    fn touch_ball(&self, rays: &Rays) -> Option<(Touches, Mask)> {
         let radius_m = self.half.x;
         let upward = radius_m / self.half.z;
         let to_centre = self.centre - rays.origin;
@@ -158,7 +158,7 @@ impl Solid {
     /// How far its faces could move inwards until the ray only just meets it: the least over the
     /// pairs of faces that the ray could pass between.
     #[inline(always)]
-    fn touch_block(&self, rays: &Rays, [cos, sin]: [f32; 2]) -> Option<(Touches, Answers)> {
+    fn touch_block(&self, rays: &Rays, [cos, sin]: [f32; 2]) -> Option<(Touches, Mask)> {
         let to_centre = self.centre - rays.origin;
         let middle = [
             cos * to_centre.x + sin * to_centre.y,
@@ -195,7 +195,7 @@ impl Solid {
         // A ray that misses enters one pair of faces after it has left another: it is nearest between.
         let abreast_m = x * to_centre.x + y * to_centre.y + z * to_centre.z;
         let between_m = abreast_m.max(leave_m).min(enter_m);
-        let distance_m = between_m.or(enter_m.above(leave_m), enter_m).max(none);
+        let distance_m = enter_m.above(leave_m).select(between_m, enter_m).max(none);
         let half_width_m = rays.half_mean * distance_m;
         let touches = Touches {
             distance_m,

@@ -1,112 +1,30 @@
-//! A bounding volume hierarchy with four children a node, for rays that widen.
-//!
-//! The four children's boxes lie side by side in arrays, so that the compiler tests them with one
-//! instruction each. A box is grown by half the pixel's width at its far end before the test. Where
-//! a pixel is wider than a box, the box's [`Haze`] stands for what is in it.
+//! The way of a fan's rays through the tree, each ray's nearest boxes first.
 
 use core::array::from_fn;
 
-use nalgebra::Vector3;
-
-use super::cover::Pixels;
-use super::haze::Haze;
-use super::ray::Rays;
-use super::solid::{Form, Solid};
+use super::{BLURRED, Bvh, Child, Node};
 use crate::vectors::eight::{Eight, LANES, Subset};
+use crate::world::scene::cover::Pixels;
+use crate::world::scene::ray::Rays;
+use crate::world::scene::solid::Solid;
 
-/// Solids in a leaf at most.
-const LEAF: usize = 4;
-/// Children that wait at most, if each ray has its own: three on each of the 19 levels that [`MAX_SOLIDS`]
-/// make at worst, and the last four.
+/// Boxes that wait at most. A ray has at most three waiting on each of the 19 levels that a tree of
+/// [`MAX_SOLIDS`] has at worst, and four on the last; each ray may have its own.
 ///
 /// [`MAX_SOLIDS`]: crate::world::build::MAX_SOLIDS
 const WAITING: usize = 64 * LANES;
-/// Up to this many solids are split where it is best, more in the middle.
-const SWEPT: usize = 4_096;
-/// From this many times a box's half diagonal on, half a pixel's width sees its haze.
-pub(super) const BLURRED: f32 = 0.12;
-/// Boxes with more solids than this have no haze: they are never that far away.
-const HAZY: usize = 512;
 
-/// Where a child leads.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Child {
-    Nothing,
-    Node(u32),
-    /// First solid and their number.
-    Leaf(u32, u32),
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Node {
-    /// Middles of the children's boxes: x, y, z of the four.
-    pub(super) middle: [[f32; 4]; 3],
-    /// Their half lengths; negative where there is no child.
-    pub(super) half: [[f32; 4]; 3],
-    /// Their half diagonals.
-    pub(super) radius: [f32; 4],
-    pub(super) children: [Child; 4],
-    pub(super) haze: [Option<Haze>; 4],
-}
-
-/// Solids in a tree of boxes.
-#[derive(Clone, Debug, Default)]
-pub struct Bvh {
-    pub(super) nodes: Vec<Node>,
-    pub(super) solids: Vec<Solid>,
-}
-
-/// A box along the axes.
-#[derive(Clone, Copy, Debug)]
-struct Bounds {
-    low: Vector3<f32>,
-    high: Vector3<f32>,
-}
-
-impl Bounds {
-    const NOTHING: Self = Self {
-        low: Vector3::new(f32::INFINITY, f32::INFINITY, f32::INFINITY),
-        high: Vector3::new(f32::NEG_INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY),
-    };
-
-    fn of(solids: &[Solid]) -> Self {
-        solids.iter().fold(Self::NOTHING, Self::with)
-    }
-
-    /// The box that holds `solid` as well.
-    fn with(self, solid: &Solid) -> Self {
-        let half = solid.bounds();
-        Self {
-            low: self.low.inf(&(solid.centre - half)),
-            high: self.high.sup(&(solid.centre + half)),
-        }
-    }
-
-    /// Half the surface; 0 of nothing.
-    fn surface(&self) -> f32 {
-        let size = (self.high - self.low).sup(&Vector3::zeros());
-        size.x * size.y + size.y * size.z + size.z * size.x
-    }
+/// The way of a fan's rays through a tree, each ray's nearest boxes first.
+///
+/// Which solids a ray comes to, and in which order, is what it would be if it came alone: boxes that
+/// some rays enter in another order than others wait once for each order.
+#[derive(Debug)]
+pub struct Walk<'a> {
+    tree: &'a Bvh,
+    waiting: Queue,
 }
 
 impl Bvh {
-    /// Sorts `solids` into a tree; `haze` sums up what is in a box.
-    pub fn new(
-        mut solids: Vec<Solid>,
-        haze: impl Fn(&[Solid], &Vector3<f32>) -> Option<Haze>,
-    ) -> Self {
-        let mut nodes = Vec::new();
-        if !solids.is_empty() {
-            grow(&mut nodes, &mut solids, 0, &haze);
-        }
-        Self { nodes, solids }
-    }
-
-    /// Whether there is nothing in it.
-    pub fn is_empty(&self) -> bool {
-        self.nodes.is_empty()
-    }
-
     /// The way of some rays of a fan through the tree.
     #[inline(always)]
     pub fn walk(&self, of: Subset) -> Walk<'_> {
@@ -125,16 +43,6 @@ impl Bvh {
     }
 }
 
-/// The way of a fan's rays through a tree, each ray's nearest boxes first.
-///
-/// Which solids a ray comes to, and in which order, is what it would be if it came alone: boxes that
-/// some rays enter in another order than others wait once for each order.
-#[derive(Debug)]
-pub struct Walk<'a> {
-    tree: &'a Bvh,
-    waiting: Queue,
-}
-
 impl<'a> Walk<'a> {
     /// The next solids that may touch a pixel and are not hidden, and the rays that come to them; adds
     /// the haze of boxes on the way that are too far away.
@@ -142,7 +50,7 @@ impl<'a> Walk<'a> {
     pub fn next(&mut self, rays: &Rays, pixels: &mut Pixels<'a>) -> Option<(&'a [Solid], Subset)> {
         let tree = self.tree;
         while let Some(next) = self.waiting.0.pop() {
-            let of = next.of & next.enters_m.below(pixels.limits_m()).yes();
+            let of = next.of & next.enters_m.below(pixels.limits_m()).lanes();
             if of.is_empty() {
                 continue;
             }
@@ -173,12 +81,12 @@ impl Queue {
     }
 }
 
-/// A box that waits for the rays that enter it.
+/// A box that waits to be visited by the rays that enter it.
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     child: Child,
     of: Subset,
-    /// Where each of them does.
+    /// Where each of the rays enters.
     enters_m: Eight,
 }
 
@@ -188,36 +96,23 @@ impl Waiting {
         of: Subset::NONE,
         enters_m: Eight([0.0; LANES]),
     };
-}
 
-impl Waiting {
-    /// The rays that enter both boxes, and the other one earlier, or as early if it is the `later` child.
+    /// The rays that enter both boxes, and the other one first: earlier, or as early if the other is the `later`
+    /// child.
     #[inline(always)]
     fn goes_under(&self, other: &Self, later: bool) -> Subset {
         let both = self.of & other.of;
         if later {
-            both.without(other.enters_m.above(self.enters_m).yes())
+            both.without(other.enters_m.above(self.enters_m).lanes())
         } else {
-            both & other.enters_m.below(self.enters_m).yes()
+            both & other.enters_m.below(self.enters_m).lanes()
         }
     }
 }
 
 impl Node {
-    /// The ball that fills a child's box, as round as may be.
-    pub(super) fn ball(&self, lane: usize) -> Solid {
-        let level_m = 0.5 * (self.half[0][lane] + self.half[1][lane]);
-        Solid {
-            centre: Vector3::from([0, 1, 2].map(|axis| self.middle[axis][lane])),
-            half: Vector3::new(level_m, level_m, self.half[2][lane]),
-            form: Form::Ball,
-            ragged: 0.0,
-            material: 0,
-        }
-    }
-
-    /// Lets the children wait that the widening rays enter; adds the haze of those that are too far
-    /// away.
+    /// Lets the children wait that the widening rays enter; where a child is too small for a pixel, adds its haze
+    /// instead.
     #[inline(always)]
     fn visit<'a>(&'a self, rays: &Rays, of: Subset, pixels: &mut Pixels<'a>, waiting: &mut Queue) {
         let limits_m = pixels.limits_m();
@@ -236,7 +131,7 @@ impl Node {
             if let Some(haze) = &self.haze[lane] {
                 let blurred = widths_m
                     .above(Eight::all(BLURRED * self.radius[lane]))
-                    .yes();
+                    .lanes();
                 if !(of & blurred).is_empty() {
                     pixels.add_haze(haze, &self.ball(lane), rays, of & blurred);
                 }
@@ -271,7 +166,7 @@ impl Node {
             enter = enter.larger(middle - half);
             leave = leave.smaller(middle + half);
         }
-        let misses = enter.above(leave).yes();
+        let misses = enter.above(leave).lanes();
         (enter, Subset::ALL.without(misses), rays.half_mean * reach)
     }
 }
@@ -318,101 +213,15 @@ fn wait(entered: &[Waiting], waiting: &mut Queue) {
     }
 }
 
-/// Builds the node over `solids`, which begin at `first`, and gives its index.
-fn grow(
-    nodes: &mut Vec<Node>,
-    solids: &mut [Solid],
-    first: usize,
-    haze: &impl Fn(&[Solid], &Vector3<f32>) -> Option<Haze>,
-) -> usize {
-    let index = nodes.len();
-    nodes.push(Node {
-        middle: [[0.0; 4]; 3],
-        half: [[f32::NEG_INFINITY; 4]; 3],
-        radius: [0.0; 4],
-        children: [Child::Nothing; 4],
-        haze: [None; 4],
-    });
-    let half = split(solids);
-    let (left, right) = solids.split_at_mut(half);
-    let (left_half, right_half) = (split(left), split(right));
-    let (a, b) = left.split_at_mut(left_half);
-    let (c, d) = right.split_at_mut(right_half);
-    let mut start = first;
-    for (lane, part) in [a, b, c, d].into_iter().enumerate() {
-        if part.is_empty() {
-            continue;
-        }
-        let bounds = Bounds::of(part);
-        let (middle, extent) = (
-            0.5 * (bounds.low + bounds.high),
-            0.5 * (bounds.high - bounds.low),
-        );
-        let child = if part.len() <= LEAF {
-            Child::Leaf(start as u32, part.len() as u32)
-        } else {
-            Child::Node(grow(nodes, part, start, haze) as u32)
-        };
-        start += part.len();
-        let node = &mut nodes[index];
-        for axis in 0..3 {
-            node.middle[axis][lane] = middle[axis];
-            node.half[axis][lane] = extent[axis];
-        }
-        node.radius[lane] = extent.norm();
-        node.children[lane] = child;
-        node.haze[lane] = (part.len() <= HAZY).then(|| haze(part, &extent)).flatten();
-    }
-    index
-}
-
-/// Sorts `solids` so that the first and the rest lie apart, and gives the number of the first: where
-/// the surfaces of the two boxes, weighted by what they hold, are least (Goldsmith & Salmon 1987).
-/// Either holds a quarter at least, which bounds the tree's depth.
-fn split(solids: &mut [Solid]) -> usize {
-    let total = solids.len();
-    if total <= 1 {
-        return total;
-    }
-    if total > SWEPT {
-        let bounds = Bounds::of(solids);
-        sort_along(solids, (bounds.high - bounds.low).imax());
-        return total / 2;
-    }
-    let (mut best, mut best_axis, mut least) = (total / 2, 0, f32::INFINITY);
-    for axis in 0..3 {
-        sort_along(solids, axis);
-        let mut rest = Bounds::NOTHING;
-        let mut after = vec![0.0; total];
-        for (place, solid) in solids.iter().enumerate().rev() {
-            rest = rest.with(solid);
-            after[place] = rest.surface();
-        }
-        let mut first = Bounds::NOTHING;
-        for (place, solid) in solids.iter().enumerate().take((3 * total).div_ceil(4)) {
-            let cost = first.surface() * place as f32 + after[place] * (total - place) as f32;
-            if place >= total.div_ceil(4) && cost < least {
-                (best, best_axis, least) = (place, axis, cost);
-            }
-            first = first.with(solid);
-        }
-    }
-    sort_along(solids, best_axis);
-    best
-}
-
-/// Stable, so that solids with one middle keep their order.
-fn sort_along(solids: &mut [Solid], axis: usize) {
-    solids.sort_by(|a, b| a.centre[axis].total_cmp(&b.centre[axis]));
-}
-
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
     use proptest::prelude::*;
 
     use super::*;
     use crate::world::scene::fan::{Directions, FAN};
     use crate::world::scene::ray::Aperture;
+    use crate::world::scene::solid::Form;
 
     /// Balls in disorder, a few metres round the origin.
     fn balls(places: &[[f32; 3]]) -> Vec<Solid> {
