@@ -48,15 +48,15 @@ pub enum Route {
     Scripted(Scripted),
 }
 
-/// What an operator lets the drone do.
+/// What an operator lets the drone do, step by step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scripted {
-    /// Step by step. The arguments of commands to record are the scenario's.
+    /// The steps. Commands to record have no arguments here: they get the scenario's.
     pub steps: Vec<app::Step>,
 }
 
 impl Scripted {
-    /// With these arguments to each command to record.
+    /// The script of the flight app, each command to record with these arguments.
     fn script(&self, arguments: &[u8]) -> Script {
         let mut steps = self.steps.clone();
         for step in &mut steps {

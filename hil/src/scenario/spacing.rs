@@ -12,8 +12,8 @@ const AUTO: &str = "auto";
 pub enum Spacing {
     /// Always the same.
     Every(Distance),
-    /// As far as odometry leads into the catchment of the one before with a stated probability
-    /// ([`nav::navigator::Drift`]): the firmware finds it for each snapshot.
+    /// As far as odometry leads, on the way back, from one into the catchment of the next with a stated
+    /// probability ([`nav::navigator::Drift`]): the firmware finds the distance for each snapshot.
     ByTheory,
 }
 
@@ -23,7 +23,7 @@ pub struct Distance {
     decimetres: u8,
 }
 
-/// A text that is no spacing.
+/// A text is no spacing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("from 0.2 to 10 metres in steps of 0.1, or `auto`")]
 pub struct NoSpacing;

@@ -2,11 +2,20 @@
 //!
 //! Lengths are in metres, times in seconds, speeds in m/s. Every number has a range, every table a closed list of keys:
 //! what does not fit is refused with the line where it stands.
+//!
+//! | room | what it checks |
+//! | --- | --- |
+//! | `description` | the file in all, recording, seeds and expectations |
+//! | `way` | the way out |
+//! | `script` | a way out and back, step by step |
+//! | `conditions` | wind, light and faults |
 
+mod conditions;
 mod description;
 mod script;
 #[cfg(test)]
 mod tests;
+mod way;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What an operator lets the drone do, step by step, as a file says it.
+//! What an operator lets the drone do, step by step, as a scenario's file describes it.
 
 use std::ops::RangeInclusive;
 
@@ -6,7 +6,7 @@ use autopilot::app::{Arrival, Step, Until};
 use link::{Mode, Record, WorldPoint};
 use serde::Deserialize;
 
-use super::description::LENGTHS_M;
+use super::way::LENGTHS_M;
 use crate::scenario::{Route, Scripted};
 
 /// How long the camera may lead in one step, seconds.
