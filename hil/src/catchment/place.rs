@@ -10,9 +10,9 @@ use super::pictures::{Pictures, PicturesError};
 use super::render;
 
 /// Size of the paper's room, along x and y, metres (Gaffin & Brayfield 2016).
-const ROOM_M: [f32; 2] = [7.3, 6.9];
+pub const ROOM_M: [f32; 2] = [7.3, 6.9];
 /// A photographed room's height unless it is told, metres.
-const ROOM_HEIGHT_M: f32 = 3.0;
+pub const ROOM_HEIGHT_M: f32 = 3.0;
 /// From where a photographed room is taken to be photographed, metres above the floor.
 const TRIPOD_M: f32 = 1.5;
 /// How near to the walls of a photographed room there are positions, metres.

@@ -29,11 +29,11 @@ const SCENARIOS: &str = "tests/scenarios";
     Each row is told on stderr as soon as it is there; all of them in the paper's order at the end, on stdout.\n\
     Exit code 0: everything that was checked holds. 1: something does not. 2: something could not be measured.")]
 pub struct Arguments {
-    /// How many seeds of each scenario, or snapshots of each room, as far as more of them say more [default: as the
-    /// files say]
+    /// How many seeds of each scenario, or snapshots of each room, up to the number beyond which more say nothing new
+    /// [default: as the files say]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     seeds: Option<u64>,
-    /// At most two seeds of each scenario; what flies none is measured as ever
+    /// At most two seeds of each scenario; what is measured without a scenario stays as it is
     #[arg(long, conflicts_with = "seeds")]
     quick: bool,
     /// One of them alone: a scenario's name, board, elsewhere, drift-model, drift, moved-objects, scaling, catchment or
@@ -118,11 +118,12 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
 #[derive(Default)]
 struct Found {
     rows: Vec<Row>,
-    /// The names of what could not be: hours of other flights are not lost for it.
+    /// The names of what could not be measured. They are told in the end, so that the flights of hours are not lost.
     impossible: Vec<String>,
 }
 
 impl Found {
+    /// Takes the rows of an experiment, or why there are none, and tells of them.
     fn add(&mut self, rows: Result<Vec<Row>, Failure>, name: &str, console: &Console) {
         match rows {
             Ok(rows) => {
@@ -144,7 +145,7 @@ impl Found {
     }
 }
 
-/// The rows of what flies no scenario.
+/// The rows of what is measured without a scenario.
 fn measure(
     computed: &Computed,
     arguments: &Arguments,

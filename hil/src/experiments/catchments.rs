@@ -1,7 +1,7 @@
 //! Fig. 3C again, claims 20 to 23: a survey as `hil catchment` makes it, small enough for a minute.
 //!
-//! Noise-free, aligned, each method tuned on the room itself, as in the paper; two rooms, the photographed lounge at the
-//! size of the paper's room, and the open office.
+//! Noise-free and aligned, each method tuned on the room itself, as in the paper. There are two rooms: the
+//! photographed lounge at the size of the paper's room, and the open office.
 
 use nav::methods::Slope;
 
@@ -13,27 +13,27 @@ use crate::catchment::{
     self, Condition, Method, Place, Settings, Survey, Task, evaluate, measure, tune, tune_among,
 };
 
-/// Snapshots of each room, where nothing is said, and at the most: beyond, the standard error falls by less than the
-/// rooms differ.
+/// Snapshots of each room: where nothing is said, and at most. With more, the standard error falls by less than
+/// the rooms differ.
 const SNAPSHOTS: [u64; 2] = [9, 25];
 /// Bytes of a snapshot: both sides of the paper's 32.
 const SIZES: [u8; 8] = [4, 6, 8, 10, 16, 24, 32, 48];
 /// The methods of the paper.
 const METHODS: [Method; 3] = [Method::Fourier, Method::Search, Method::Mfdid];
-/// Below it Fourier homing has the largest area in the paper, above it Search, bytes.
+/// Below this size Fourier homing has the largest area in the paper, above it Search, bytes.
 const PAPER_CROSSING: u8 = 32;
 /// The five lowest components, bytes (Stürzl & Mallot 2006, as the paper cites them).
 const COMPACT: u8 = 10;
-/// Up to this share, areas are taken for alike: the standard error of the paper's means is not known, that of these is
-/// of this order.
+/// Areas that differ by no more than this share count as alike. The standard error of the paper's means is not
+/// known; that of the means here is of this order.
 const ALIKE: f64 = 0.1;
 
-/// What the claims are judged by.
+/// The areas by which the claims are judged.
 #[derive(Debug, Default)]
 struct Found {
-    /// Areas of the paper's methods, tuned over all that each can vary.
+    /// Of the paper's methods, each tuned over all that it can vary.
     tuned: Vec<catchment::Row>,
-    /// Those of MFDID without Newton's step.
+    /// Of MFDID, tuned without Newton's step.
     descent: Vec<catchment::Row>,
 }
 
@@ -53,7 +53,7 @@ pub fn rows(order: &mut Order<'_>) -> Result<Vec<Row>, ExperimentError> {
 }
 
 impl Found {
-    /// Adds a place.
+    /// Adds the areas in a place.
     fn survey(
         &mut self,
         place: &Place,
@@ -204,7 +204,7 @@ fn tasks(methods: &[Method]) -> Vec<Task> {
     SIZES.iter().flat_map(|bytes| of_size(*bytes)).collect()
 }
 
-/// What can be chosen without Newton's step.
+/// The settings of a task among which there is no Newton's step: plain descent alone.
 fn descents(task: &Task) -> Vec<Settings> {
     let mut all = task.method.candidates(task.bytes, task.heading_deg);
     all.retain(|settings| match settings {
@@ -214,7 +214,7 @@ fn descents(task: &Task) -> Vec<Settings> {
     all
 }
 
-/// Mean over the rooms.
+/// Mean catchment area of a method and size over the rooms, m²; zero where it was not measured.
 fn area_m2(rows: &[catchment::Row], method: Method, bytes: u8) -> f64 {
     let alike = rows
         .iter()
@@ -253,6 +253,17 @@ mod tests {
         }
     }
 
+    /// As in the paper, but for one method at one size.
+    fn paper_but(other: Method, at_bytes: u8, area_m2: f64) -> impl Fn(Method, u8) -> f64 {
+        move |method, bytes| {
+            if (method, bytes) == (other, at_bytes) {
+                area_m2
+            } else {
+                as_in_the_paper(method, bytes)
+            }
+        }
+    }
+
     fn kept(found: &Found) -> Vec<Option<bool>> {
         found.judged().iter().map(|row| row.kept).collect()
     }
@@ -278,24 +289,15 @@ mod tests {
 
     #[test]
     fn a_search_that_is_ahead_at_16_bytes_breaks_the_claim_of_32() {
-        let ahead = |method, bytes| match (method, bytes) {
-            (Method::Search, 16) => 36.1,
-            _ => as_in_the_paper(method, bytes),
-        };
+        let ahead = paper_but(Method::Search, 16, 36.1);
         assert_eq!(kept(&found(ahead, 19.0))[0], Some(false));
-        let behind = |method, bytes| match (method, bytes) {
-            (Method::Search, 48) => 35.9,
-            _ => as_in_the_paper(method, bytes),
-        };
+        let behind = paper_but(Method::Search, 48, 35.9);
         assert_eq!(kept(&found(behind, 19.0))[0], Some(false));
     }
 
     #[test]
-    fn fewer_bytes_for_an_area_are_not_fouriers_where_another_method_has_it() {
-        let other = |method, bytes| match (method, bytes) {
-            (Method::Mfdid, 4) => 36.1,
-            _ => as_in_the_paper(method, bytes),
-        };
+    fn another_method_with_more_area_a_byte_breaks_the_claim_of_fourier() {
+        let other = paper_but(Method::Mfdid, 4, 36.1);
         assert_eq!(kept(&found(other, 19.0))[1], Some(false));
     }
 
@@ -306,10 +308,7 @@ mod tests {
 
     #[test]
     fn components_beyond_the_fifth_that_gain_an_eighth_break_the_claim_of_five() {
-        let grows = |method, bytes| match (method, bytes) {
-            (Method::Fourier, 48) => 41.0,
-            _ => as_in_the_paper(method, bytes),
-        };
+        let grows = paper_but(Method::Fourier, 48, 41.0);
         assert_eq!(kept(&found(grows, 19.0))[3], Some(false));
     }
 

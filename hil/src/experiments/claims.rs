@@ -1,7 +1,7 @@
 //! The paper's claims that can be checked, by number.
 
-/// Results and simulations of the paper (van Dijk et al. 2024, in the order of its text); the others are
-/// definitions.
+/// Results and simulations of the paper (van Dijk et al. 2024), numbered in the order of its text. Numbers that
+/// are missing are definitions.
 pub const CHECKABLE: [(u8, &str); 18] = [
     (1, "mass of the drone"),
     (2, "longest route, memory per metre"),

@@ -146,7 +146,7 @@ mod tests {
     fn a_figure_two_per_cent_off_does_not_agree() {
         let mut off = REFERENCE;
         assert!(agrees(&off, RUNS));
-        off[4].cross_sd_m *= 1.03;
+        off[4].cross_sd_m *= 1.02;
         assert!(!agrees(&off, RUNS));
     }
 

@@ -1,12 +1,17 @@
 //! The paper's checkable claims beside what is measured here, one row each.
 //!
+//! Most claims are about flights: their rows come from the scenarios that expect something of them. The others
+//! are measured without a scenario.
+//!
 //! | room | what it does |
 //! | --- | --- |
 //! | `claims` | the claims by number |
-//! | `computed` | what is measured without a scenario: board, odometry, Fig. 4, and the surveys of |
-//! | `catchments`, `scaling` | Fig. 3C, and rooms of half and double the size |
-//! | `rooms` | where they look round |
+//! | `computed` | the list of what is measured without a scenario, and the short ones: board, odometry, Fig. 4 |
+//! | `drift_model` | the paper's simulation of odometry |
+//! | `catchments` | catchment areas by method and size (Fig. 3C) |
+//! | `scaling` | the same in rooms of half and double the size |
 //! | `moved_objects` | the home vector while something is moved (tables S1 to S4) |
+//! | `rooms` | the rooms in which those three look round |
 //! | `table` | the rows as documents have them |
 
 mod catchments;
@@ -36,7 +41,7 @@ pub use computed::{COMPUTED, Computed, Order};
 /// Something could not be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum ExperimentError {
-    /// The checkout with the photographed room was not found.
+    /// The checkout, which has the photographed room, was not found.
     #[error(transparent)]
     Checkout(#[from] BuildError),
     /// A place to look round in cannot be opened.
@@ -59,9 +64,9 @@ pub struct Row {
     pub what: String,
     /// The paper's figure.
     pub paper: String,
-    /// The same here.
+    /// The figure found here, with the bound that it is held to.
     pub ours: String,
-    /// Over how many seeds, runs, views or snapshots; zero where there is nothing random.
+    /// Over how many seeds, runs, vectors or snapshots; zero where there is nothing random.
     pub seeds: usize,
     /// Whether the claim holds here; none where it is not checked.
     pub kept: Option<bool>,
@@ -70,7 +75,7 @@ pub struct Row {
     pub emulated: Option<Emulated>,
 }
 
-/// One flight of a scenario on the emulated board, beside those of the native one.
+/// The figure of one flight on the emulated board, beside that of the native flights.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Emulated {
     /// The figure.
@@ -93,7 +98,7 @@ impl Row {
         }
     }
 
-    /// The same about a claim.
+    /// The row as one about a claim.
     fn about(self, claim: u8) -> Self {
         Self {
             claim: Some(claim),
@@ -101,7 +106,8 @@ impl Row {
         }
     }
 
-    /// Whether nothing about it is wrong: it holds or is not checked, and an emulated flight was the native one.
+    /// Whether nothing is wrong with it: the claim holds or is not checked, and the emulated flight, if there is
+    /// one, equals the native one.
     pub fn is_sound(&self) -> bool {
         self.kept != Some(false) && self.emulated.as_ref().is_none_or(|beside| beside.as_native)
     }
@@ -131,7 +137,8 @@ pub fn rows(file: &ScenarioFile, outcome: &Outcome) -> Vec<Row> {
     outcome.expectations.iter().map(row).collect()
 }
 
-/// Writes the flight of a seed on the emulated board beside the rows of a scenario; `native` is that of the same seed.
+/// Writes the flight of a seed on the emulated board beside the rows of a scenario; `native` is the native flight
+/// of the same seed.
 pub fn beside(
     rows: &mut [Row],
     file: &ScenarioFile,
@@ -169,7 +176,7 @@ pub fn unanswered(claims: &[u8]) -> Vec<u8> {
     numbers.filter(|number| !claims.contains(number)).collect()
 }
 
-/// A row whose figure lies in a range.
+/// A row about a claim, which holds where the figure lies in a range.
 fn measured(
     claim: u8,
     paper: &str,

@@ -1,9 +1,9 @@
 //! Tables S1 to S4: the home vector is watched while something is moved round the robot.
 //!
 //! The robot stands half a metre from its snapshot. Then somebody comes, a chair is set down, or a cupboard that was
-//! there is pushed aside: how far the vector moves, whether it still leads home, and whether its quality tells. The text
-//! of the paper speaks of "some robustness against small, dynamic objects" and has no figures; its condition for coming
-//! home is a vector within 90 degrees of the way.
+//! there is pushed aside. Measured is how far the vector moves, whether it still leads home, and whether its quality
+//! falls. The text of the paper speaks of "some robustness against small, dynamic objects" and has no figures; its
+//! condition for coming home is a vector within 90 degrees of the way.
 
 use core::f32::consts::TAU;
 
@@ -19,7 +19,7 @@ use crate::catchment::render::{self, Extras, Pillar, Stand};
 use crate::metrics::quantile;
 use crate::parallel;
 
-/// Snapshots of each room, where nothing is said, and at the most.
+/// Snapshots of each room: where nothing is said, and at most.
 const SNAPSHOTS: [u64; 2] = [9, 36];
 /// How high the published flights are, metres.
 const EYE_M: f32 = 0.5;
@@ -33,7 +33,7 @@ const BEARINGS: u8 = 12;
 const PUSHED_RAD: f32 = TAU / 12.0;
 /// The paper's snapshot, bytes.
 const BYTES: u8 = 16;
-/// What share of the vectors has to lead home: what "some robustness" is taken for.
+/// Share of the vectors that has to lead home: what "some robustness" is taken for here.
 const ENOUGH: f64 = 0.95;
 
 /// What is moved.
@@ -44,13 +44,14 @@ struct Object {
     radius_m: f32,
     height_m: f32,
     radiance: f32,
-    /// It stood there when the snapshot was taken, and is pushed aside; others come from outside.
+    /// It stood near by when the snapshot was taken, and is pushed aside; else it comes from outside.
     was_there: bool,
-    /// Whether it is what the paper calls small and dynamic, and is held to that.
+    /// Whether it is what the paper calls small and dynamic, and so is held to the bound.
     is_small: bool,
 }
 
-/// Half breadths and heights are those of people and furniture, radiances those of dark clothes, wood and white paint.
+/// Half breadths and heights are those of people and furniture; radiances are those of dark clothes, wood and white
+/// paint.
 const OBJECTS: [Object; 3] = [
     Object {
         what: "a chair is set down",
@@ -85,9 +86,9 @@ struct Watched {
     moved_m: f64,
     /// By what angle it turns, degrees.
     turned_deg: f64,
-    /// From the way home before and afterwards, degrees.
+    /// Its angle to the way home, before and afterwards, degrees.
     off_deg: [f64; 2],
-    /// Whether its quality is lower than before.
+    /// Whether its quality is lower afterwards.
     told: bool,
 }
 
@@ -116,19 +117,21 @@ pub fn rows(order: &mut Order<'_>) -> Result<Vec<Row>, ExperimentError> {
     Ok(rows)
 }
 
-/// Where the snapshots are, and where the robot stands for each.
+/// Each snapshot's place with each free place beside it where the robot stands, metres.
 fn stands(grid: &Grid, snapshots: usize) -> Vec<([f32; 2], [f32; 2])> {
     let goals = grid.lattice(snapshots).into_iter();
     goals
         .flat_map(|index| {
             let goal_m = grid.position_m(index);
             (0..SIDES)
-                .map(move |side| (goal_m, beside(goal_m, TAU * f32::from(side) / 4.0, AWAY_M)))
+                .map(|side| TAU * f32::from(side) / f32::from(SIDES))
+                .map(move |bearing| (goal_m, beside(goal_m, bearing, AWAY_M)))
         })
         .filter(|(_, at_m)| is_free(grid, *at_m))
         .collect()
 }
 
+/// The place that lies `away_m` from another in a direction, counter-clockwise from x.
 fn beside([x, y]: [f32; 2], bearing: f32, away_m: f32) -> [f32; 2] {
     [
         x + away_m * libm::cosf(bearing),
@@ -136,7 +139,7 @@ fn beside([x, y]: [f32; 2], bearing: f32, away_m: f32) -> [f32; 2] {
     ]
 }
 
-/// Whether the nearest position of the grid is free, and there is one.
+/// Whether a place lies on the grid, and the position nearest to it is free.
 fn is_free(grid: &Grid, at_m: [f32; 2]) -> bool {
     let [column, row] = grid.cell(at_m).map(|cell| libm::floorf(cell + 0.5));
     let is_on_it =
@@ -144,7 +147,7 @@ fn is_free(grid: &Grid, at_m: [f32; 2]) -> bool {
     is_on_it && grid.free[row as usize * grid.columns + column as usize]
 }
 
-/// Somebody who looks at the home vector.
+/// One object in one room, and the method whose home vector is watched.
 struct Watch<'w> {
     world: &'w World,
     grid: &'w Grid,
@@ -162,7 +165,7 @@ impl<'w> Watch<'w> {
         }
     }
 
-    /// What becomes of the vector from a place to a snapshot, for each place of the object that is free.
+    /// What becomes of the vector from `at_m` to a snapshot at `goal_m`, for each free place of the object.
     fn at(&self, goal_m: [f32; 2], at_m: [f32; 2]) -> Vec<Watched> {
         let untouched = self.memory(goal_m, None);
         let undisturbed = self.vector(at_m, None, &untouched);
@@ -230,7 +233,8 @@ impl<'w> Watch<'w> {
     }
 }
 
-/// None where there was no vector before; where there is none afterwards, it is gone to zero and leads nowhere.
+/// Two vectors compared. None where there was none before; where there is none afterwards, it counts as one of
+/// length zero that leads away from home.
 fn compared(
     before: Option<Homeward>,
     after: Option<Homeward>,
@@ -258,6 +262,7 @@ fn compared(
     })
 }
 
+/// The row of an object.
 fn judged(object: &Object, watched: &[Watched]) -> Row {
     let share = |holds: fn(&Watched) -> bool| {
         watched.iter().filter(|watched| holds(watched)).count() as f64 / watched.len().max(1) as f64
@@ -312,7 +317,7 @@ mod tests {
         let [goal_m, at_m] = [[0.5, 0.0], [0.0, 0.0]];
         let found = compared(vector(0.3, 0.0, 0.9), vector(0.0, 0.4, 0.8), goal_m, at_m);
         let found = found.expect("two vectors");
-        // A triangle of 3, 4 and 5 in units of 2 m / 10.
+        // Legs of 0.3 and 0.4 make a hypotenuse of 0.5, in units of 2 m.
         assert!((found.moved_m - 1.0).abs() < 1e-6, "{found:?}");
         assert!((found.turned_deg - 90.0).abs() < 1e-4, "{found:?}");
         assert!(found.off_deg[0].abs() < 1e-4, "{found:?}");

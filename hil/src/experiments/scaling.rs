@@ -1,8 +1,8 @@
 //! Claim 35: catchment areas scale with the distance of the walls.
 //!
-//! The photographed lounge on the faces of rooms of half, the same and double the size of the paper's. What belongs to
-//! the robot stays as it is: its height, the grid, the half metre that counts as home, and its settings, which are tuned
-//! in the paper's size alone.
+//! The photographed lounge is put on the faces of rooms of half, the same and double the size of the paper's. What
+//! belongs to the robot stays as it is: its height, the grid, the half metre that counts as home, and its settings,
+//! which are tuned at the paper's size alone.
 
 use super::claims::what;
 use super::computed::Order;
@@ -11,7 +11,7 @@ use crate::catchment::{Condition, Method, Settings, Survey, Task, evaluate, tune
 
 /// Factors on the room's size; the settings are tuned at 1.
 const SCALES: [f32; 3] = [0.5, 1.0, 2.0];
-/// Snapshots of each room, where nothing is said, and at the most.
+/// Snapshots of each room: where nothing is said, and at most.
 const SNAPSHOTS: [u64; 2] = [16, 36];
 /// The paper's method and snapshot (Fig. 8).
 const TASK: Task = Task {
@@ -19,15 +19,17 @@ const TASK: Task = Task {
     bytes: 16,
     heading_deg: 0.0,
 };
-/// The slope of log √area over log size, of which proportional is 1, and how far off it may be: over the range of four
-/// the length then grows by 3 to 5.3 times.
+/// Bounds of the slope of log √area over log size, which is 1 where they are proportional. Over sizes that differ by
+/// a factor of four √area then grows by a factor of 3 to 5.3.
 const SLOPE: [f64; 2] = [0.8, 1.2];
 
-/// A room of a size.
+/// What was found in the room of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scaled {
     scale: f32,
+    /// The mean catchment area.
     area_m2: f64,
+    /// The area of all free positions, which bounds it.
     free_m2: f64,
 }
 
@@ -61,7 +63,7 @@ pub fn rows(order: &mut Order<'_>) -> Result<Vec<Row>, ExperimentError> {
     }])
 }
 
-/// Those that are best in the room of the paper's size.
+/// The settings that are best in the room of the paper's size.
 fn of_paper_size(surveys: &[Survey]) -> Vec<Settings> {
     let middle: Vec<&Survey> = surveys.iter().skip(1).take(1).collect();
     tune(&middle, &[TASK], |_| ())

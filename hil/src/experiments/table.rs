@@ -2,7 +2,7 @@
 
 use super::Row;
 
-/// What stands above and below the tables in a document.
+/// The lines above and below the tables in a document.
 pub const MARKERS: [&str; 2] = [
     "<!-- From here on as `hil experiments --markdown` prints it. -->",
     "<!-- To here. -->",
@@ -87,7 +87,7 @@ fn cells(row: &Row) -> Cells {
         kept(row.kept).to_owned(),
         emulated,
     ]
-    // A cell must not end where a text has a bar.
+    // A bar within a text would end the cell.
     .map(|cell| cell.replace('|', "\\|"))
 }
 

@@ -1,8 +1,9 @@
-//! The command, what it says, and folders for what it reads and leaves.
+//! The command, what it says, what it is given, and folders for what it reads and leaves.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use hil::scenario::file::ScenarioFile;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -14,6 +15,19 @@ const FLIGHT_FILES: [&str; 5] = [
     "report.html",
     "map.svg",
 ];
+
+/// A scenario of seconds, for tests that do not care what is flown.
+pub const CORNER: &str = r#"
+meaning = "Round one corner"
+world = "arena"
+route = "corner"
+seeds = { first = 1, count = 3 }
+
+[[expect]]
+metric = "home_error_m.max"
+at_most = 0.5
+reason = "it is short"
+"#;
 
 /// Runs the command to its end.
 pub fn hil(arguments: &[&str]) -> Output {
@@ -32,13 +46,20 @@ pub fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", stderr(output)))
 }
 
+/// A file or folder of this checkout.
+pub fn checkout(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
 /// The path of a golden file.
 pub fn golden(name: &str) -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .expect("the workspace");
-    let path = root.join("tests/golden/data").join(name);
+    let path = checkout("tests/golden/data").join(name);
     path.display().to_string()
+}
+
+/// The scenarios in a folder of this checkout.
+pub fn scenarios(folder: &str) -> Vec<ScenarioFile> {
+    ScenarioFile::open_all(&checkout(folder)).expect("the library is sound")
 }
 
 /// A folder for one test, gone after it.

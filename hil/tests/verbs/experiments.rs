@@ -1,21 +1,16 @@
 //! `hil experiments`, and the tables that it makes for the documentation.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use hil::experiments::{self, COMPUTED, table};
 use hil::scenario::expectation::Expectation;
 use hil::scenario::file::ScenarioFile;
 use serde_json::Value;
 
-use super::bench::{Folder, hil, json, stderr};
-
-fn checkout(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
-}
+use super::bench::{CORNER, Folder, checkout, hil, json, scenarios, stderr};
 
 fn library() -> Vec<ScenarioFile> {
-    ScenarioFile::open_all(&checkout("tests/scenarios")).expect("the library is sound")
+    scenarios("tests/scenarios")
 }
 
 /// The lines of a document's tables that the command made, cell by cell.
@@ -155,20 +150,9 @@ fn rows_are_told_as_they_come_and_printed_as_the_document_has_them() {
 #[test]
 fn a_flight_on_the_emulated_board_stands_beside_the_native_one_it_repeats() {
     let folder = Folder::new();
-    let short = r#"
-meaning = "A short way that claims something"
-world = "arena"
-route = "corner"
-seeds = { first = 1, count = 1 }
-
-[[expect]]
-metric = "home_error_m.max"
-at_most = 0.5
-claim = 31
-paper = "followed home"
-reason = "it is short"
-"#;
-    folder.with("short.toml", short);
+    let claims = "at_most = 0.5\nclaim = 31\npaper = \"followed home\"";
+    let short = CORNER.replace("at_most = 0.5", claims);
+    folder.with("short.toml", short.replace("count = 3", "count = 1"));
     let scenarios = folder.path().display().to_string();
     let arguments = ["experiments", "--scenarios", &scenarios, "--only", "short"];
     let output = hil(&[&arguments[..], &["--emulated-beside", "--json"]].concat());

@@ -11,7 +11,7 @@ use hil::scenario::file::{Backend, ScenarioFile};
 use hil::sweep::{FlightFigures, Outcome, Vessel, fly_each};
 use nalgebra::Vector2;
 
-use super::bench::{Folder, hil, json, stderr};
+use super::bench::{CORNER, Folder, hil, json, scenarios, stderr};
 
 /// Scenarios whose flights take many seconds, some of them minutes: flown by `hil experiments` alone.
 const LONG: [&str; 14] = [
@@ -30,28 +30,6 @@ const LONG: [&str; 14] = [
     "u-office",
     "u-wind",
 ];
-
-/// What is flown where a test does not care.
-const CORNER: &str = r#"
-meaning = "Round one corner"
-world = "arena"
-route = "corner"
-seeds = { first = 1, count = 3 }
-
-[[expect]]
-metric = "home_error_m.max"
-at_most = 0.5
-reason = "it is short"
-"#;
-
-fn library() -> Vec<ScenarioFile> {
-    files_in("../tests/scenarios")
-}
-
-fn files_in(folder: &str) -> Vec<ScenarioFile> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    ScenarioFile::open_all(&root.join(folder)).expect("the library is sound")
-}
 
 fn image() -> &'static [u8] {
     static IMAGE: OnceLock<Vec<u8>> = OnceLock::new();
@@ -80,7 +58,7 @@ fn first_flight(file: &ScenarioFile) -> Outcome {
 
 #[test]
 fn every_short_scenario_of_the_library_keeps_what_it_expects() {
-    let mut files = library();
+    let mut files = scenarios("tests/scenarios");
     files.retain(|file| !LONG.contains(&file.name.as_str()));
     assert!(files.len() >= 20, "{} scenarios", files.len());
     let broken: Vec<String> = parallel::map(&files, first_flight, |_| ())
@@ -95,7 +73,7 @@ fn every_way_of_a_kilometre_is_as_long_and_clear_of_what_stands_there() {
     // Beside the way, metres: what a drone that follows by odometry and sight may stray, and its rotors.
     const ASIDE_M: [f32; 3] = [-0.6, 0.0, 0.6];
     const HEIGHTS_M: [f32; 3] = [0.3, 0.55, 0.8];
-    let files = files_in("../tests/scenarios/kilometre");
+    let files = scenarios("tests/scenarios/kilometre");
     assert_eq!(files.len(), 3);
     for file in files {
         let scenario = file.scenario(file.seeds.first).expect("a flight");
