@@ -10,11 +10,12 @@ pub fn length(path: &[PlanarPose]) -> f64 {
         .fold(0.0, |length, step| length + step)
 }
 
-/// Steps in which the length of an estimated path is measured, m. The estimate trembles by some millimetres from row to
-/// row, which adds up to a fifth of a slow flight.
+/// Steps in which the length of an estimated path is measured, metres. The estimate trembles by some millimetres from
+/// row to row, which adds up to a fifth of a slow flight.
 const STEP_M: f64 = 0.1;
 
-/// Length of a path whose points tremble, metres: a point counts when it is [`STEP_M`] from the one that counted last.
+/// Length of a path whose points tremble, metres: a point counts when it is [`STEP_M`] or more from the one that
+/// counted last.
 pub fn length_in_steps(path: &[PlanarPose]) -> f64 {
     let mut steps: Vec<PlanarPose> = Vec::new();
     for pose in path {

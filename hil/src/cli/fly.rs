@@ -94,6 +94,13 @@ fn parse_spacing(text: &str) -> Result<Spacing, String> {
         .map_err(|wrong: NoSpacing| format!("{wrong}; the paper flies 1 or 2"))
 }
 
+fn parse_percent(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|percent| (0.0..=100.0).contains(percent))
+        .ok_or_else(|| "a number from 0 to 100".to_owned())
+}
+
 fn parse_deviation(text: &str) -> Result<Deviation, String> {
     text.parse()
         .ok()
@@ -142,7 +149,7 @@ pub struct Arguments {
     #[arg(long, value_name = "ELF")]
     firmware: Option<PathBuf>,
     /// Per cent of the steps on the backend `board` that may begin more than 5 ms late
-    #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
+    #[arg(long, value_name = "PERCENT", default_value = "1", value_parser = parse_percent)]
     late: f64,
 }
 
@@ -245,7 +252,7 @@ fn on_board(
 fn kept_step(flown: &Flown, most_percent: f64) -> Result<(), Failure> {
     match &flown.summary.live {
         Some(live) if 100.0 * live.pace.late_share > most_percent => Err(format!(
-            "{:.1} % of the steps began late: this machine has too much else to do",
+            "{:.1} % of the steps began late, where {most_percent} % may: this machine has too much else to do",
             100.0 * live.pace.late_share
         )
         .into()),

@@ -141,7 +141,8 @@ impl Transcript {
         })
     }
 
-    /// In what a board's snapshots differ from those that this machine takes; none where they are the same.
+    /// The first difference of a board's snapshots from those that this machine takes, in words; none where they are
+    /// the same.
     ///
     /// # Errors
     /// [`CalibrationError`], never with the default lens.
@@ -149,12 +150,15 @@ impl Transcript {
         let here = self.snapshots()?;
         let differs = |index: &u16| of_board.get(index) != here.get(index);
         let mut all = of_board.keys().chain(here.keys());
+        let in_words = |snapshot: Option<&Vec<i8>>| {
+            snapshot.map_or("none".to_owned(), |snapshot| format!("{snapshot:?}"))
+        };
         Ok(all.find(|index| differs(index)).map(|index| {
             format!(
-                "the board took other snapshots than this machine does from the same frames: the first is {index}, {:?} \
-                 there and {:?} here; its log tells of {} frames of {} and {} STATE messages of {}",
-                of_board.get(index),
-                here.get(index),
+                "the board took other snapshots than this machine does from the same frames: the first is {index}, {} \
+                 there and {} here; its log tells of {} frames of {} and {} STATE messages of {}",
+                in_words(of_board.get(index)),
+                in_words(here.get(index)),
                 self.known.logged_frames,
                 self.known.frames,
                 self.known.logged_states,
@@ -196,8 +200,8 @@ impl Transcript {
     }
 }
 
-/// The snapshots that a board took on the way out, by what both ends said on the link. The app's own
-/// list may lack some: of ten messages it uses nine.
+/// The snapshots that a board took on the way out, by all that both ends said on the link. The recording's marks
+/// may lack some: they are of the messages that the app used, and of ten it uses nine.
 pub fn snapshots_said(deeds: &[Deed]) -> Snapshots {
     let mut said = Said::default();
     for deed in deeds {

@@ -1,7 +1,8 @@
 //! What is known of a board by what was said on its link.
 
+use frames::Shape;
 use hil::record::{Deed, Side, What};
-use hil::rig::transcript::snapshots_said;
+use hil::rig::transcript::{Order, Snapshots, Transcript, snapshots_said};
 use link::{Command, Map, Message, Mode};
 
 fn sent(t_ms: u64, by: Side, message: Message) -> Deed {
@@ -53,4 +54,21 @@ fn the_autopilots_own_words_are_no_snapshots_of_the_board() {
         sent(20, Side::Camera, map(0, &[])),
     ];
     assert!(snapshots_said(&deeds).is_empty());
+}
+
+#[test]
+fn a_snapshot_that_only_the_board_took_is_a_difference_and_named() {
+    let shape = Shape {
+        width: 128,
+        height: 96,
+        bytes_per_pixel: 2,
+        luma_offset: 0,
+    };
+    let nothing = Transcript::merge(&Order::default(), vec![], vec![], shape).expect("an order");
+    let difference = |of_board: &Snapshots| nothing.difference(of_board).expect("a lens");
+    assert_eq!(difference(&Snapshots::new()), None);
+    let said = difference(&[(7, vec![1, 2])].into()).expect("a difference");
+    for words in ["the first is 7", "[1, 2] there and none here"] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
 }

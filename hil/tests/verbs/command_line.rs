@@ -12,6 +12,7 @@ fn a_wrong_value_gets_an_error_that_names_the_right_ones() {
         ("--backend", "abacus", "emulator, native"),
         ("--spacing", "40", "0.2 to 10 metres"),
         ("--spacing", "0.25", "steps of 0.1"),
+        ("--late", "nan", "from 0 to 100"),
     ] {
         let output = hil(&["fly", option, wrong]);
         assert_eq!(output.status.code(), Some(2), "{option}");
