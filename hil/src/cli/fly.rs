@@ -8,7 +8,7 @@ use frames::Identity;
 use super::Failure;
 use super::conditions::ConditionArguments;
 use super::console::Console;
-use super::{live, world};
+use super::{live, summary, world};
 use crate::board::emulated::Firmware;
 use crate::flight::{self, FlightError, Flown, Progress};
 use crate::folder;
@@ -20,7 +20,6 @@ use crate::scenario::file::{self, ScenarioFile};
 use crate::scenario::{
     Deviation, Homing, NoSpacing, Route, Scenario, SnapshotForm, Spacing, Storage,
 };
-use crate::summary::{DirectionFigures, Summary};
 
 /// The board a flight is flown on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -204,7 +203,7 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
     if arguments.json {
         console.result(&serde_json::to_string(&flown.summary)?)?;
     } else {
-        console.result(&in_words(&flown.summary))?;
+        console.result(&summary::in_words(&flown.summary))?;
     }
     Ok(flown.summary.completed)
 }
@@ -324,92 +323,4 @@ pub(super) fn with_progress(
     });
     bar.finish();
     result
-}
-
-/// The summary for people, without a newline at the end.
-fn in_words(summary: &Summary) -> String {
-    let verdict = if summary.completed {
-        "home"
-    } else {
-        "NOT HOME"
-    };
-    let mut lines = vec![format!("{verdict}: {}", summary.outcome)];
-    let mut row = |name: &str, value: String| lines.push(format!("  {name:<22}{value}"));
-    row(
-        "home error",
-        format!(
-            "{:.2} m (odometry alone: {:.2} m)",
-            summary.home_error_m, summary.odometry_only_error_m
-        ),
-    );
-    row(
-        "cross-track error",
-        format!("{:.2} m rms", summary.cross_track_rms_m),
-    );
-    row(
-        "flown",
-        format!(
-            "{:.1} m out, {:.1} m back, {:.0} s",
-            summary.outbound_m, summary.inbound_m, summary.flight_s
-        ),
-    );
-    row(
-        "route memory",
-        format!(
-            "{} snapshots, {} bytes, {:.1} bytes/m",
-            summary.snapshots, summary.memory_bytes, summary.bytes_per_m
-        ),
-    );
-    row(
-        "frames",
-        format!(
-            "{} captured of {} sent, {} dropped",
-            summary.frames_captured, summary.frames_sent, summary.frames_dropped
-        ),
-    );
-    let one_way = |figures: DirectionFigures| {
-        format!(
-            "{} sent, {} dropped",
-            figures.frames_sent, figures.frames_dropped
-        )
-    };
-    row(
-        "link frames",
-        format!(
-            "to camera {}; to autopilot {}",
-            one_way(summary.link.to_camera),
-            one_way(summary.link.to_autopilot)
-        ),
-    );
-    if let Some(cycles) = &summary.cycles_per_frame {
-        row(
-            "cycles per frame",
-            format!("p50 {}, p99 {}, max {}", cycles.p50, cycles.p99, cycles.max),
-        );
-    }
-    if let Some(load) = summary.cpu_load {
-        row("processor load", format!("{:.1} %", 100.0 * load));
-    }
-    if let Some(firmware) = &summary.firmware {
-        let stack = match firmware.stack_peak_bytes {
-            Some(bytes) => format!("{bytes} B stack"),
-            None if summary.backend == "board" => "stack not measured".to_owned(),
-            None => "stack overflown".to_owned(),
-        };
-        row(
-            "firmware",
-            format!(
-                "{} B flash, {} B static RAM, {stack}",
-                firmware.flash_bytes, firmware.ram_bytes
-            ),
-        );
-    }
-    row(
-        "speed",
-        format!(
-            "{:.0}x real time ({:.1} s)",
-            summary.realtime_factor, summary.wall_s
-        ),
-    );
-    lines.join("\n")
 }

@@ -37,6 +37,7 @@ mod replay;
 mod rig;
 mod size;
 mod steps;
+mod summary;
 mod sweep;
 mod timing;
 mod world;
