@@ -29,8 +29,8 @@ const SCENARIOS: &str = "tests/scenarios";
     Each row is told on stderr as soon as it is there; all of them in the paper's order at the end, on stdout.\n\
     Exit code 0: everything that was checked holds. 1: something does not. 2: something could not be measured.")]
 pub struct Arguments {
-    /// How many seeds of each scenario, or snapshots of each room, up to the number beyond which more say nothing new
-    /// [default: as the files say]
+    /// How many seeds of each scenario; of what is measured without one as many runs or snapshots, within limits of its
+    /// own [default: as the files say]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     seeds: Option<u64>,
     /// At most two seeds of each scenario; what is measured without a scenario stays as it is
