@@ -14,7 +14,7 @@ pub fn length(path: &[PlanarPose]) -> f64 {
 /// row to row, which adds up to a fifth of a slow flight.
 const STEP_M: f64 = 0.1;
 
-/// Length of a path whose points tremble, metres: a point counts when it is [`STEP_M`] or more from the one that
+/// Length of a path whose points tremble, metres: a point counts when it is `STEP_M` or more from the one that
 /// counted last.
 pub fn length_in_steps(path: &[PlanarPose]) -> f64 {
     let mut steps: Vec<PlanarPose> = Vec::new();
