@@ -56,7 +56,7 @@ pub fn realtime_factor(elf: Option<&[u8]>) -> Result<f64, FlightError> {
         conditions: Conditions::default(),
     };
     let flown = match elf {
-        Some(elf) => flight::fly_emulated(&scenario, elf, &mut |_| {}),
+        Some(elf) => flight::fly_emulated_alone(&scenario, elf, &mut |_| {}),
         None => flight::fly_native(&scenario, &mut |_| {}),
     }?;
     Ok(flown.summary.realtime_factor)

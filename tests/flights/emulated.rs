@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use hil::flight::{Flown, fly_emulated, fly_native};
+use hil::flight::{Flown, fly_emulated, fly_emulated_alone, fly_native};
 use hil::image;
 use hil::scenario::{
     Conditions, Deviation, Homing, Route, Scenario, SnapshotForm, Spacing, Storage,
@@ -100,8 +100,9 @@ fn a_route_of_packed_snapshots_is_followed_home_alike_on_either_board() {
 }
 
 #[test]
-fn an_emulated_flight_is_the_same_flight_every_time() {
-    let again = fly(Route::Corner);
+fn an_emulated_flight_is_the_same_flight_every_time_and_with_a_second_thread() {
+    let again = fly_emulated_alone(&scenario(Route::Corner), elf(), &mut |_| ());
+    let again = again.expect("a flight");
     assert_eq!(json(&corner().recording), json(&again.recording));
 }
 

@@ -116,10 +116,12 @@ impl PanoramicCamera {
     }
 
     /// The frame that the sensor puts out while it masks its output.
-    pub fn black_frame(&mut self) -> &Frame {
-        let (pixels, _) = self.frame.as_chunks_mut::<2>();
+    #[must_use]
+    pub fn black_frame() -> Box<Frame> {
+        let mut frame = Box::new([0; FRAME_BYTES]);
+        let (pixels, _) = frame.as_chunks_mut::<2>();
         pixels.fill(sensor::BLACK_PIXEL);
-        &self.frame
+        frame
     }
 }
 

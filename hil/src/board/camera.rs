@@ -3,10 +3,13 @@
 use emulator::time::Nanos;
 use emulator::wiring::Pin;
 use fake_sensors::camera::tcm8230::{Edge, Tcm8230};
-use fake_sensors::camera::{Frame, HEIGHT, PanoramicCamera, Pose};
+use fake_sensors::camera::{
+    Exposure, FRAME_BYTES, Frame, HEIGHT, ImageTuning, LINE_BYTES, Moment, PanoramicCamera, Pose,
+};
 use sensor::tcm8230::SETTLING_FRAMES;
 
 use super::poses::Poses;
+use super::rows::{Order, Rows, Ticket};
 
 /// The sensor's reset input (pin map of the flight board).
 const RESET: Pin = Pin {
@@ -28,14 +31,35 @@ pub const LAST_LINE: Edge = Edge::Line(HEIGHT - 1);
 #[derive(Debug)]
 pub struct Camera {
     chip: Tcm8230,
-    optics: PanoramicCamera,
+    rows: Rows,
     poses: Poses,
-    /// When the frame that is being put out began.
-    frame_start_ns: u64,
+    /// The frame that is being put out, as far as it has been; below that the one before.
+    frame: Box<Frame>,
+    /// What is being lit: the same frame, or ahead of time the next; none where that is black.
+    exposed: Option<Exposed>,
+    /// What its first rows are seen from, as far as that is known, and with which order each was lit.
+    lit: Vec<(Moment, Ticket)>,
     frames_started: u64,
     frames_sent: u64,
     /// Frames that a driver throws away: the sensor's first show nothing yet.
     settling: u8,
+}
+
+/// A frame that is being exposed.
+#[derive(Debug)]
+struct Exposed {
+    picture: Picture,
+    /// The sensor as it was when the frame began, or as it will be.
+    chip: Tcm8230,
+}
+
+/// What a frame shows but for the light on its rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Picture {
+    number: u32,
+    start_ns: u64,
+    tuning: ImageTuning,
+    exposure: Exposure,
 }
 
 impl Camera {
@@ -43,12 +67,23 @@ impl Camera {
     pub fn new(chip: Tcm8230, optics: PanoramicCamera, pose: Pose) -> Self {
         Self {
             chip,
-            optics,
+            rows: Rows::new(optics),
             poses: Poses::new(pose),
-            frame_start_ns: 0,
+            frame: Box::new([0; FRAME_BYTES]),
+            exposed: None,
+            lit: Vec::with_capacity(HEIGHT),
             frames_started: 0,
             frames_sent: 0,
             settling: SETTLING_FRAMES,
+        }
+    }
+
+    /// The same with a second thread that renders ahead: for a flight that has the machine to itself.
+    #[must_use]
+    pub fn with_helper(self) -> Self {
+        Self {
+            rows: self.rows.with_helper(),
+            ..self
         }
     }
 
@@ -56,6 +91,7 @@ impl Camera {
     /// world's time. Each row shows the world from where the camera was amid the row's exposure.
     pub fn look_from(&mut self, now_ns: u64, pose: Pose) {
         self.poses.push(now_ns, pose);
+        self.light_ahead();
     }
 
     /// The sensor's registers and timing.
@@ -65,7 +101,7 @@ impl Camera {
 
     /// The frame that is being put out.
     pub fn frame(&self) -> &Frame {
-        self.optics.frame()
+        &self.frame
     }
 
     /// Frames that have started since power-on.
@@ -96,31 +132,105 @@ impl Camera {
 
     fn begin_frame(&mut self, now_ns: u64, number: u32) {
         self.frames_started += 1;
-        self.frame_start_ns = now_ns;
         if self.chip.black() {
-            self.optics.black_frame();
-        } else {
-            self.optics.set_tuning(self.chip.tuning());
-            self.optics.begin_frame(number);
-            self.light_row(0);
+            self.frame = PanoramicCamera::black_frame();
         }
+        let picture = Picture::of(&self.chip, now_ns, number);
+        if picture != self.exposed.as_ref().map(|exposed| exposed.picture) {
+            self.expose(self.chip.clone(), picture);
+        }
+        self.light_row(0);
+        self.light_ahead();
     }
 
     /// The row below has its light a moment early, for the optic blurs: at the newest pose, should
     /// the middle of its exposure be yet to come.
     fn read_row(&mut self, row: usize) {
-        if !self.chip.black() {
-            if row + 1 < HEIGHT {
-                self.light_row(row + 1);
-            }
-            self.optics.read_row(row, self.chip.exposure());
+        let below = (row + 1).min(HEIGHT - 1);
+        if below > row {
+            self.light_row(below);
+        }
+        if let Some((_, ticket)) = self.lit.get(below) {
+            let (lines, _) = self.frame.as_chunks_mut::<LINE_BYTES>();
+            lines[row] = self.rows.read(row, *ticket);
+        }
+        if row == below {
+            self.expose_next();
         }
     }
 
+    /// Begins with the frame that follows if nobody touches the sensor until then.
+    fn expose_next(&mut self) {
+        let mut chip = self.chip.clone();
+        while let Some(due_ns) = chip.next_edge() {
+            if let Some(Edge::FrameStart { number }) = chip.take_edge(due_ns) {
+                let picture = Picture::of(&chip, due_ns, number);
+                self.expose(chip, picture);
+                self.light_ahead();
+                return;
+            }
+        }
+    }
+
+    fn expose(&mut self, chip: Tcm8230, picture: Option<Picture>) {
+        self.lit.clear();
+        self.exposed = picture.map(|picture| Exposed { picture, chip });
+        if let Some(Picture { number, tuning, .. }) = picture {
+            self.rows.order(Order::Begin { number, tuning });
+        }
+    }
+
+    /// Now a row must have its light. If it has it already, ahead of time, then almost always the right one. But a
+    /// clock that changed in between has moved the middle of its exposure: the row and those below have it afresh.
     fn light_row(&mut self, row: usize) {
-        let amid_ns = self.chip.mid_exposure_ns(row);
-        let at_ns = self.frame_start_ns.saturating_add_signed(amid_ns);
-        self.optics.light_row(row, &self.poses.at(at_ns));
+        let Some(Exposed { picture, .. }) = &self.exposed else {
+            return;
+        };
+        let picture = *picture;
+        let moment = self.poses.at(picture.amid_ns(&self.chip, row));
+        if self.lit.get(row).is_none_or(|(lit, _)| *lit != moment) {
+            self.lit.truncate(row);
+            self.order_light(&picture, row, moment);
+        }
+    }
+
+    /// Rows the middle of whose exposure has passed have their light now: no pose to come changes it.
+    fn light_ahead(&mut self) {
+        while let Some(Exposed { picture, chip }) = &self.exposed
+            && self.lit.len() < HEIGHT
+            && let row = self.lit.len()
+            && let Some(moment) = self.poses.settled(picture.amid_ns(chip, row))
+        {
+            let picture = *picture;
+            self.order_light(&picture, row, moment);
+        }
+    }
+
+    fn order_light(&mut self, picture: &Picture, row: usize, moment: Moment) {
+        let ticket = self.rows.order(Order::Light {
+            row,
+            moment,
+            exposure: picture.exposure,
+        });
+        self.lit.push((moment, ticket));
+    }
+}
+
+impl Picture {
+    /// The frame that `chip` has begun at `start_ns`; none where it is black.
+    fn of(chip: &Tcm8230, start_ns: u64, number: u32) -> Option<Self> {
+        (!chip.black()).then(|| Self {
+            number,
+            start_ns,
+            tuning: chip.tuning(),
+            exposure: chip.exposure(),
+        })
+    }
+
+    /// The middle of a row's exposure, by the clock that `chip` has.
+    fn amid_ns(&self, chip: &Tcm8230, row: usize) -> u64 {
+        let amid_ns = chip.mid_exposure_ns(row);
+        self.start_ns.saturating_add_signed(amid_ns)
     }
 }
 
@@ -174,63 +284,4 @@ impl Camera {
 }
 
 #[cfg(test)]
-mod tests {
-    use fake_sensors::camera::tcm8230::{frame_period_ns, line_offset_ns};
-    use fake_sensors::camera::{LINE_BYTES, PanoramicLens};
-    use fake_sensors::world::World;
-    use nalgebra::{UnitQuaternion, Vector3};
-
-    use super::*;
-
-    const EXTCLK_HZ: u32 = 21_000_000;
-    /// A frame's time: it is exposed for the whole time between two of its readouts.
-    const LINES: u16 = 525;
-
-    fn heading(yaw_rad: f32) -> Pose {
-        Pose {
-            position_m: Vector3::new(-1.0, 0.4, 0.5),
-            attitude: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw_rad),
-        }
-    }
-
-    /// The third frame of a camera (the first is black) that turns at once at `turn_ns`.
-    fn third_frame(turn_ns: u64, turn_rad: f32) -> Frame {
-        let chip = Tcm8230::streaming(0, EXTCLK_HZ, LINES, 1.0);
-        let world = World::named("arena-panels", 1).unwrap();
-        let optics = PanoramicCamera::new(world, &PanoramicLens::default(), 1);
-        let mut camera = Camera::new(chip, optics, heading(0.0));
-        let mut turned = false;
-        while let Some(due_ns) = camera.chip().next_edge() {
-            if !turned && due_ns >= turn_ns {
-                camera.look_from(turn_ns - 1, heading(0.0));
-                camera.look_from(turn_ns, heading(turn_rad));
-                turned = true;
-            }
-            if camera.take_edge(due_ns) == Some(Edge::FrameEnd) && camera.frames_started() == 3 {
-                break;
-            }
-        }
-        *camera.frame()
-    }
-
-    #[test]
-    fn a_row_shows_the_world_from_amid_its_exposure_and_not_from_its_readout() {
-        let row = 60;
-        let frame_ns = 2 * frame_period_ns(EXTCLK_HZ);
-        let readout_ns = frame_ns + line_offset_ns(row, EXTCLK_HZ);
-        let amid_ns = readout_ns - frame_period_ns(EXTCLK_HZ) / 2;
-        let [before, after] = [third_frame(1, 0.0), third_frame(1, 1.0)];
-        // Just before and just after the middle of that row's exposure.
-        let [early, late] = [amid_ns - 1_000, amid_ns + 1_000].map(|ns| third_frame(ns, 1.0));
-        // The blur mixes in the row above and the row below.
-        let byte = |row: usize| LINE_BYTES * row;
-        assert!(early[..byte(row - 1)] == before[..byte(row - 1)]);
-        assert!(early[byte(row + 1)..] == after[byte(row + 1)..]);
-        assert!(late[..byte(row)] == before[..byte(row)]);
-        assert!(late[byte(row + 2)..] == after[byte(row + 2)..]);
-        assert!(early[byte(row)..byte(row + 1)] != late[byte(row)..byte(row + 1)]);
-        assert!(before[byte(row)..] != after[byte(row)..]);
-        // A turn after the readout began, and still before the frame's end, shows nowhere.
-        assert!(third_frame(frame_ns + frame_period_ns(EXTCLK_HZ) - 1, 1.0) == before);
-    }
-}
+mod tests;

@@ -9,6 +9,7 @@ pub mod observer;
 pub mod origin;
 mod poses;
 pub mod probe;
+mod rows;
 pub(crate) mod rtt;
 pub mod sabotage;
 pub mod serial_frames;

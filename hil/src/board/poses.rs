@@ -67,6 +67,12 @@ impl Poses {
             time_s: begun_ns as f64 * 1e-9,
         }
     }
+
+    /// What [`at`](Self::at) says of `at_ns` from now on, whatever poses come; none where the next may change it.
+    pub fn settled(&self, at_ns: u64) -> Option<Moment> {
+        let (newest_ns, _) = self.known.back()?;
+        (self.rounded(at_ns) < *newest_ns).then(|| self.at(at_ns))
+    }
 }
 
 impl Poses {

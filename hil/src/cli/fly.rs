@@ -193,7 +193,7 @@ pub fn run(arguments: &Arguments, console: &Console) -> Result<bool, Failure> {
         Some(image) if let Some(rig) = &rig => on_board(&scenario, rig, image, console)?,
         None => with_progress(console, |progress| flight::fly_native(&scenario, progress))?,
         Some(image) => with_progress(console, |progress| {
-            flight::fly_emulated(&scenario, &image.bytes, progress)
+            flight::fly_emulated_alone(&scenario, &image.bytes, progress)
         })
         .map_err(|error| image.failure(error))?,
     };

@@ -1,12 +1,14 @@
 //! The flight loop: vehicle, sensors, autopilot and board, a millisecond at a time.
 //!
-//! One loop, no threads, no wall clock: the same scenario is the same flight on every machine.
+//! One loop, no wall clock: the same scenario is the same flight on every machine. A second thread may render ahead, and
+//! changes no bit (`board::rows`).
 
 pub(crate) mod aircraft;
 mod autopilot;
 pub(crate) mod sum_up;
 pub(crate) mod wire;
 
+use std::convert::identity;
 use std::fmt;
 use std::time::Instant;
 
@@ -127,7 +129,17 @@ pub fn fly_emulated(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Flown, FlightError> {
     let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
-    fly_firmware(scenario, &firmware, None, progress)
+    fly_firmware(scenario, &firmware, identity, None, progress)
+}
+
+/// The same flight, bit for bit, where it has the machine to itself: a second thread renders ahead.
+pub fn fly_emulated_alone(
+    scenario: &Scenario,
+    elf: &[u8],
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Flown, FlightError> {
+    let firmware = Firmware::parse(elf)?.with_lens(scenario.conditions.lens);
+    fly_firmware(scenario, &firmware, Camera::with_helper, None, progress)
 }
 
 /// Flies a scenario on an emulated board that somebody watches. `firmware` has the scenario's lens
@@ -138,12 +150,13 @@ pub fn fly_watched<'w>(
     observer: &'w mut dyn Observer,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Flown, FlightError> {
-    fly_firmware(scenario, firmware, Some(observer), progress)
+    fly_firmware(scenario, firmware, identity, Some(observer), progress)
 }
 
 fn fly_firmware<'w>(
     scenario: &Scenario,
     firmware: &'w Firmware,
+    equip: fn(Camera) -> Camera,
     observer: Option<&'w mut dyn Observer>,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Flown, FlightError> {
@@ -152,8 +165,8 @@ fn fly_firmware<'w>(
     }
     let started = Instant::now();
     let world = World::open(&scenario.world, scenario.seed)?;
-    let mut board = Emulated::boot(firmware, camera(scenario, &world, Tcm8230::default()))?
-        .with_trouble(scenario.conditions.camera);
+    let camera = equip(camera(scenario, &world, Tcm8230::default()));
+    let mut board = Emulated::boot(firmware, camera)?.with_trouble(scenario.conditions.camera);
     if let Some(observer) = observer {
         board = board.watched_by(observer)?;
     }
