@@ -224,7 +224,7 @@ pub enum What {
     },
     /// The flight app lets the drone fly to another place than before: x north, y west, metres.
     FlyTo([f32; 2]),
-    /// The flight app told its filter that the drone is elsewhere and turned.
+    /// The flight app told its filter that the drone is elsewhere and turned; or by nothing, that it is right.
     Correct {
         /// From the estimate: x north, y west, metres.
         shift_m: [f32; 2],
@@ -267,7 +267,7 @@ pub struct Recording {
     pub odometry: Vec<OdometryMark>,
     /// Every VECTOR.
     pub vectors: Vec<VectorMark>,
-    /// Every new INS_CORRECTION.
+    /// Every new INS_CORRECTION that moves the estimate.
     pub corrections: Vec<CorrectionMark>,
     /// Every frame that was processed.
     pub frames: Vec<FrameMark>,

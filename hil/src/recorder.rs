@@ -280,6 +280,10 @@ impl Recorder {
         if self.correction_index.replace(index) == Some(index) {
             return;
         }
+        // On the way out: where a snapshot is taken the estimate is right by definition.
+        if from == to {
+            return;
+        }
         let mark = CorrectionMark {
             t,
             index,

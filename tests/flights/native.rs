@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use hil::flight::{Flown, fly_native};
-use hil::record::{Phase, PlanarPose, TrackPoint};
+use hil::record::{Phase, PlanarPose, TrackPoint, What};
 use hil::scenario::{Conditions, Homing, Route, Scenario, Spacing, Storage, flow_scale};
 use tests::Budgets;
 
@@ -63,6 +63,25 @@ fn the_u_route_is_56_m_long_and_stored_in_snapshots_two_metres_apart() {
     );
     let bytes = 18 * recording.snapshots.len() + 2 * usize::from(recording.odometry_stored);
     assert_eq!(summary.memory_bytes, bytes);
+}
+
+#[test]
+fn at_each_snapshot_the_filter_is_told_that_it_is_right_on_the_way_out_and_where_it_is_on_the_way_back()
+ {
+    let Flown { summary, recording } = u_route();
+    let corrections = recording.deeds.iter().filter_map(|deed| match deed.what {
+        What::Correct { shift_m, turn_rad } => Some((shift_m, turn_rad)),
+        _ => None,
+    });
+    let (right, wrong): (Vec<_>, Vec<_>) =
+        corrections.partition(|correction| *correction == ([0.0; 2], 0.0));
+    assert_eq!(right.len(), summary.snapshots);
+    assert_eq!(wrong.len(), recording.corrections.len());
+    // Only those that move the estimate are marks in the recording, and those come on the way back.
+    let led = (recording.track.iter()).find(|point| point.phase == Phase::Odometry);
+    let led_s = led.expect("a way back").t;
+    assert!(wrong.len() > 20);
+    assert!(recording.corrections.iter().all(|mark| mark.t > led_s));
 }
 
 #[test]
@@ -156,8 +175,8 @@ fn snapshots_are_as_far_apart_as_the_command_says() {
         .summary
         .snapshots
     };
-    // At 0, 1, 2, 3, 4 m and at 0, 2, 4 m; the leg ends a little short of 5 m of odometry.
-    assert_eq!((snapshots(1.0), snapshots(2.0)), (5, 3));
+    // At 0, 1.1, 2.2, 3.3, 4.4 m and at 0, 2.2, 4.4 m of a leg of 5 m, give or take some centimetres.
+    assert_eq!((snapshots(1.1), snapshots(2.2)), (5, 3));
 }
 
 #[test]

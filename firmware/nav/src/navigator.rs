@@ -185,6 +185,9 @@ impl Navigator {
             Activity::Recording(recorder) => {
                 let now = (now_ms, seen_from);
                 recorder.step(&self.parameters, &mut self.route, now, view, &mut step);
+                if step.has_snapshot() && recorder.stores_odometry() {
+                    step.correction = self.realigner.anchor(&self.parameters, now_ms, pose);
+                }
             }
             Activity::Following(follower) => {
                 let mut context = Context {

@@ -87,7 +87,8 @@ fn on_an_undisturbed_link_the_published_client_flies_to_the_bit_as_one_without_b
     assert!(repeats[0] > 500, "{repeats:?}");
     assert_eq!(repeats[1..], [0, 0]);
     let applied = flights.map(|flown| flown.counters.corrections_applied);
-    assert!((2..=4).contains(&applied[0]), "{applied:?}");
+    // One where each of two to four snapshots is taken, and one where it is left.
+    assert!((4..=8).contains(&applied[0]), "{applied:?}");
     assert_eq!(applied, [applied[0]; 3], "each once, repeated or not");
 }
 

@@ -27,6 +27,23 @@ impl Realigner {
             .is_none_or(|last| has_passed(last, now_ms, parameters.realignment_interval_ms))
     }
 
+    /// The correction that moves nothing: a route's coordinates are those of the estimate when it was recorded, so
+    /// where a snapshot is taken the estimate is right by definition. None too soon after another one.
+    ///
+    /// An autopilot's filter that is never told where it is gets less and less sure of its place and heading, and
+    /// of the two together: tens of metres from where it started, the flow of a drone that turns a corner moves
+    /// its place by up to half a metre in a tenth of a second (crazyflie-firmware kalman_core; a kilometre of the
+    /// rig's). Told, it is sure, and goes on from there.
+    pub(super) fn anchor(
+        &mut self,
+        parameters: &Parameters,
+        now_ms: u32,
+        pose: &Pose,
+    ) -> Option<Correction> {
+        self.is_ready(parameters, now_ms)
+            .then(|| self.realign(now_ms, pose, pose.position, 0.0))
+    }
+
     /// The correction of a drone that is at `recorded`, where the snapshot's viewer is turned
     /// counter-clockwise by `rotation` against the current one.
     ///

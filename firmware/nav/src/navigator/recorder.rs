@@ -51,6 +51,11 @@ impl Recorder {
         }
     }
 
+    /// Whether the way is stored, in the coordinates of the estimate.
+    pub(super) const fn stores_odometry(&self) -> bool {
+        self.what.odometry
+    }
+
     pub(super) fn step(
         &mut self,
         parameters: &Parameters,

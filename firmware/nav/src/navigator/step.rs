@@ -14,7 +14,7 @@ pub const EVENTS_PER_STEP: usize = 8;
 pub struct Step {
     /// Where to fly; none where the autopilot shall keep what it has.
     pub vector: Option<SetPoint>,
-    /// A realignment of the autopilot's estimate.
+    /// A realignment of the autopilot's estimate; or, where a snapshot was taken, the word that it is right.
     pub correction: Option<Correction>,
     /// What was pushed on the route, or where the next target lies.
     pub map: Option<MapEntry>,
@@ -23,6 +23,13 @@ pub struct Step {
 }
 
 impl Step {
+    /// Whether a snapshot was taken.
+    pub(super) fn has_snapshot(&self) -> bool {
+        self.map
+            .as_ref()
+            .is_some_and(|entry| entry.snapshot.is_some())
+    }
+
     pub(super) fn report(&mut self, event: Event) {
         // No step has more than five: a leg begins, is over at once, and homing begins without a view.
         let _ = self.events.push(event);
@@ -53,8 +60,8 @@ pub struct SetPoint {
     pub delta_yaw: f32,
 }
 
-/// The estimate at a snapshot, and what it should be. It is repeated, unchanged, while the navigator
-/// waits for it to take effect; the receiver applies an index once.
+/// The estimate at a snapshot, and what it should be: where a snapshot is taken, itself. On the way back it is
+/// repeated, unchanged, while the navigator waits for it to take effect; the receiver applies an index once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
     /// Not zero, and another one for each new correction.

@@ -1,4 +1,4 @@
-//! What a drone believes that leaves a snapshot without having got there.
+//! What the autopilot is told of where the drone is: when a snapshot is taken, and when one is left.
 
 use super::*;
 
@@ -49,4 +49,50 @@ fn a_drone_that_sees_itself_at_the_snapshot_is_there() {
     let (correction, place) = correction_of_a_drone_that_stands(f32::INFINITY);
     let left = correction.to.position.x - place;
     assert!(left.abs() < 0.03, "{left}");
+}
+
+#[test]
+fn where_a_snapshot_is_taken_the_estimate_is_said_to_be_right() {
+    let mut bench = Bench::new();
+    bench.command(0x03);
+    let mut said = Vec::new();
+    for tenths in 0..=45_u8 {
+        let (x, y) = (0.1 * f32::from(tenths), 0.02 * f32::from(tenths));
+        let step = bench.step(x, y, Some(&view()));
+        assert_eq!(step.correction.is_some(), step.has_snapshot());
+        said.extend(step.correction.map(|correction| (correction, x, y)));
+    }
+    let indices: Vec<u16> = said.iter().map(|(said, ..)| said.index).collect();
+    assert_eq!(indices, [1, 2, 3]);
+    for (said, x, y) in said {
+        assert_eq!(said.from, Pose::new(Point2::new(x, y), 0.0));
+        assert_eq!(said.to, said.from);
+    }
+}
+
+#[test]
+fn a_sequence_that_stores_no_way_says_nothing_of_the_estimate() {
+    let mut bench = Bench::new();
+    bench.command(0x05);
+    for tenths in 0..=40_u8 {
+        let step = bench.step(0.1 * f32::from(tenths), 0.0, Some(&view()));
+        assert_eq!(step.correction, None);
+    }
+    assert!(bench.snapshots() > 12);
+}
+
+#[test]
+fn snapshots_that_follow_at_once_are_said_to_be_right_once_a_second() {
+    let mut bench = Bench::new();
+    bench.navigator.set_snapshot_spacing(0.3);
+    bench.command(0x03);
+    let said: Vec<u8> = (0..=40_u8)
+        .filter(|tenths| {
+            let step = bench.step(0.1 * f32::from(*tenths), 0.0, Some(&view()));
+            step.correction.is_some()
+        })
+        .collect();
+    assert!(bench.snapshots() > 10);
+    assert!(said.len() > 3, "{said:?}");
+    assert!(said.windows(2).all(|two| two[1] - two[0] >= 10), "{said:?}");
 }
